@@ -1,0 +1,144 @@
+/*
+ * Stereo matching of a rectified pair by the sum of absolute differences.
+ *
+ *   P(x,y)   = clip(x-Sobel / 4) + cap, 0 .. 2 cap            docs/math.md, eq. (10)
+ *   A(x,y,d) = |P_left(x,y) - P_right(x - s - d, y)|          eq. (11)
+ *   S(x,y,d) = sum of A over window x window                  eq. (12)
+ *   d*       = the lowest d with the least S(x,y,d)           eq. (14)
+ *
+ * then tests of texture (13), uniqueness (15) and left-right consistency (17),
+ * and a sub-pixel offset (16) rounded to the nearest 1/16 px. s is
+ * search_start_px; d + s is the disparity between the views, the map holds d.
+ *
+ * The whole image is matched. Pixel (x,y) searches the d in 0 .. D-1 whose right
+ * pixel x - s - d lies in the right image; a pixel without any is invalid. The
+ * window is completed by replication: a row outside the image is the nearest row
+ * inside, and for each d a column where A(.,.,d) does not exist is the nearest
+ * column where it does (docs/math.md, eq. (12)).
+ *
+ * This portable C is the definition: every variant for an instruction set gives
+ * the same bits.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_VISION_MATCH_H
+#define TSR_VISION_MATCH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "tsr/base/disparity.h"
+#include "tsr/base/image.h"
+#include "tsr/base/status.h"
+
+#define TSR_MATCH_WINDOW_MAX 15
+#define TSR_MATCH_DISPARITIES_MIN 16
+#define TSR_MATCH_SCRATCH_ALIGN 4
+/* Switches the uniqueness, texture or left-right test off. */
+#define TSR_MATCH_TEST_OFF UINT8_C(255)
+
+/* Zero in a field means the default named beside it. */
+struct tsr_match_config {
+    uint16_t width;             /* px, disparities .. TSR_IMAGE_WIDTH_MAX; no default */
+    uint16_t height;            /* px, window .. TSR_IMAGE_HEIGHT_MAX; no default */
+    uint16_t disparities;       /* D, searched disparities, 16 .. 128, a multiple of 8; default 32 */
+    uint8_t window;             /* px, odd, 5 .. 15; default 9 */
+    uint8_t prefilter_cap;      /* 1 .. 127 / window (2 cap window <= 255); default the largest */
+    uint8_t uniqueness_percent; /* 1 .. 100, or off; default 10 */
+    uint8_t texture_min;        /* least sum of |P_left - cap| over the window, in units of window px, 1 .. 127, or
+                                   off; default 1 */
+    uint8_t lr_tolerance_px;    /* 1 .. 127, or off; default 1 */
+    int16_t search_start_px;    /* s, -(width - disparities) .. width - disparities; default 0 */
+};
+
+/* Content belongs to the module. */
+struct tsr_match {
+    struct tsr_match_config config; /* defaults filled in */
+    struct tsr_gray left;
+    struct tsr_gray right;
+    uint16_t *map;
+    uint8_t *scratch;
+    uint16_t rows_done;
+};
+
+/* TSR_OK, or TSR_ERR_ARG with *field (may be null) naming the first bad field
+ * ("config" for a null config). *field is a static string. */
+enum tsr_status tsr_match_check(const struct tsr_match_config *config, const char **field);
+
+/* Scratch bytes, from resolved values and from a configuration (0 if it does
+ * not check): column sums, and a few rows. */
+#define TSR_MATCH_SCRATCH_LEN(width, disparities)                                                                      \
+    ((size_t)(width) * ((size_t)(disparities) + 5u) + 4u * (size_t)(disparities))
+size_t tsr_match_scratch_len(const struct tsr_match_config *config);
+
+/*
+ * The pair layout: both frames and the map in one buffer.
+ *
+ *     byte 0                        width bytes     width bytes
+ *     pad row 0                    [ map row 0 ................. ]
+ *       ...                        [ ...                         ]
+ *     pad row window/2             [ map row window/2            ]
+ *     frame row 0                  [ left row 0   | right row 0   ]  <- map row window/2 + 1
+ *     frame row 1                  [ left row 1   | right row 1   ]
+ *       ...
+ *     frame row height - 1         [ left         | right         ]
+ *
+ * A row of the map takes the bytes of a row of both frames, and is written when
+ * the frame row under it has been used for the last time.
+ */
+#define TSR_MATCH_PAIR_LEN(width, height, window)                                                                      \
+    (2u * (size_t)(width) * ((size_t)(height) + (size_t)(window) / 2u + 1u))
+size_t tsr_match_pair_len(const struct tsr_match_config *config);
+
+/* The frames and the map [height][width] in a pair buffer of
+ * tsr_match_pair_len(config) bytes, aligned to 2. The config must check. */
+struct tsr_gray tsr_match_pair_left(uint8_t *pair, const struct tsr_match_config *config);
+struct tsr_gray tsr_match_pair_right(uint8_t *pair, const struct tsr_match_config *config);
+uint16_t *tsr_match_pair_map(uint8_t *pair);
+
+/*
+ * Begin matching a pair.
+ *
+ *   match        filled; kept until run returns TSR_OK or the work is given up
+ *   config       borrowed (copied)
+ *   left, right  [height][width] gray, consumed: the content is destroyed by run.
+ *                Kept until run returns TSR_OK. They do not share bytes (their
+ *                rows may interleave).
+ *   map          [height][width] out, px, UQ12.4, 0 .. 16 (D - 1), or
+ *                TSR_DISPARITY_INVALID; aligned to 2. Apart from the frames, or
+ *                overlaying them so that row y of the map ends where row
+ *                y - window/2 of either frame begins, or before (the pair layout).
+ *   map_cap      elements available in map, >= width * height
+ *   scratch      [scratch_cap] kept as the frames; aligned to
+ *                TSR_MATCH_SCRATCH_ALIGN, apart from everything else
+ *   scratch_cap  bytes, >= tsr_match_scratch_len(config)
+ *
+ * Returns TSR_OK; TSR_ERR_ARG for a null pointer, a bad field, a misaligned
+ * pointer or a map that overlays a frame in another way; TSR_ERR_SIZE if a
+ * frame is not width x height or its stride < width; TSR_ERR_NOBUF if a buffer
+ * is too small. On error nothing is written, on TSR_OK only *match.
+ */
+enum tsr_status tsr_match_start(struct tsr_match *match, const struct tsr_match_config *config, struct tsr_gray left,
+                                struct tsr_gray right, uint16_t *map, size_t map_cap, uint8_t *scratch,
+                                size_t scratch_cap);
+
+/*
+ * Continue for at most rows rows of work, of tsr_match_rows_total() in all:
+ *
+ *   height      prefilter rows, each about 30 instructions per pixel
+ *   window/2    warm-up rows, each about 5 per pixel and disparity
+ *   height      matched rows, each about 50 per pixel and disparity (Cortex-M4)
+ *
+ * The result does not depend on how the rows are divided among calls. Matched
+ * row y of the map is final as soon as it is done.
+ *
+ * Returns TSR_AGAIN while rows are left, TSR_OK when the map is complete (and
+ * from then on, doing nothing); TSR_ERR_ARG for a null match or rows = 0.
+ */
+enum tsr_status tsr_match_run(struct tsr_match *match, uint16_t rows);
+
+/* Rows of work done since start, and in all. */
+uint16_t tsr_match_rows_done(const struct tsr_match *match);
+uint16_t tsr_match_rows_total(const struct tsr_match *match);
+
+#endif

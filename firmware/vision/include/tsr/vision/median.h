@@ -1,0 +1,70 @@
+/*
+ * 3x3 median of a disparity map, in place.
+ *
+ *   out(x,y) = lower median of the valid values      docs/math.md, eq. (18)
+ *              among the 3x3 neighbours inside the map
+ *
+ * A pixel is valid afterwards if at least TSR_MEDIAN_VALID_MIN of its (up to
+ * nine) neighbours, itself included, were valid before and it was valid itself,
+ * or at least TSR_MEDIAN_FILL_MIN and it was not: specks vanish, pinholes close.
+ * Of n values in ascending order the lower median is the one at (n - 1) / 2.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_VISION_MEDIAN_H
+#define TSR_VISION_MEDIAN_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "tsr/base/disparity.h"
+#include "tsr/base/image.h"
+#include "tsr/base/status.h"
+
+#define TSR_MEDIAN_VALID_MIN 3
+#define TSR_MEDIAN_FILL_MIN 5
+#define TSR_MEDIAN_SCRATCH_ALIGN 2
+
+/* Scratch bytes: two rows of the map before the median. */
+#define TSR_MEDIAN_SCRATCH_LEN(width) (4u * (size_t)(width))
+
+/* Content belongs to the module. */
+struct tsr_median {
+    uint16_t *map;
+    uint8_t *scratch;
+    uint16_t width;
+    uint16_t height;
+    uint16_t rows_done;
+};
+
+/*
+ * Begin a median.
+ *
+ *   median       filled
+ *   width,       px, 1 .. TSR_IMAGE_WIDTH_MAX, 1 .. TSR_IMAGE_HEIGHT_MAX
+ *   height
+ *   map          [height][width] in and out, px, UQ12.4 or
+ *                TSR_DISPARITY_INVALID; kept until run returns TSR_OK
+ *   map_cap      elements available in map, >= width * height
+ *   scratch      [scratch_cap] kept as the map; aligned to
+ *                TSR_MEDIAN_SCRATCH_ALIGN, apart from the map
+ *   scratch_cap  bytes, >= TSR_MEDIAN_SCRATCH_LEN(width)
+ *
+ * Returns TSR_OK; TSR_ERR_ARG for a null or misaligned pointer or a shape out of
+ * range; TSR_ERR_NOBUF if a buffer is too small. On error nothing is written.
+ */
+enum tsr_status tsr_median_start(struct tsr_median *median, uint16_t width, uint16_t height, uint16_t *map,
+                                 size_t map_cap, uint8_t *scratch, size_t scratch_cap);
+
+/*
+ * Continue for at most rows rows, each about 150 instructions per pixel. The
+ * result does not depend on how the rows are divided among calls.
+ *
+ * Returns TSR_AGAIN while rows are left, TSR_OK when the map is complete (and
+ * from then on, doing nothing); TSR_ERR_ARG for a null median or rows = 0.
+ */
+enum tsr_status tsr_median_run(struct tsr_median *median, uint16_t rows);
+
+uint16_t tsr_median_rows_done(const struct tsr_median *median);
+
+#endif

@@ -1,0 +1,247 @@
+/*
+ * The matcher's configuration, buffers and order of rows.
+ *
+ *   rows_done   0 .. H - 1        prefilter row rows_done
+ *               H .. H + r - 1    warm-up: column sums one row above the image
+ *               H + r .. 2H + r   map rows 0 .. H - 1
+ *
+ * with r = window / 2. The column sums of the row above the image hold row 0
+ * r + 2 times and rows 1 .. r - 1 once, so that moving them down to map row 0
+ * is a step like every other.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include "tsr/vision/match.h"
+
+#include <stdbool.h>
+#include <string.h>
+
+#include "match_stages.h"
+
+#define DISPARITIES_DEFAULT 32
+#define WINDOW_DEFAULT 9
+#define WINDOW_MIN 5
+#define CAP_ROOM 127 /* cap * window <= 127: column sums of 2 cap fit 8 bits */
+#define UNIQUENESS_DEFAULT 10
+#define UNIQUENESS_MAX 100
+#define TEXTURE_DEFAULT 1
+#define TOLERANCE_DEFAULT 1
+#define TEST_MAX 127
+
+static uint8_t value_or(uint8_t value, uint8_t fallback)
+{
+    return value != 0 ? value : fallback;
+}
+
+static struct tsr_match_config resolve(const struct tsr_match_config *config)
+{
+    struct tsr_match_config resolved = *config;
+    resolved.disparities = config->disparities != 0 ? config->disparities : DISPARITIES_DEFAULT;
+    resolved.window = value_or(config->window, WINDOW_DEFAULT);
+    resolved.prefilter_cap = value_or(config->prefilter_cap, (uint8_t)(CAP_ROOM / resolved.window));
+    resolved.uniqueness_percent = value_or(config->uniqueness_percent, UNIQUENESS_DEFAULT);
+    resolved.texture_min = value_or(config->texture_min, TEXTURE_DEFAULT);
+    resolved.lr_tolerance_px = value_or(config->lr_tolerance_px, TOLERANCE_DEFAULT);
+    return resolved;
+}
+
+static bool is_above(uint8_t value, uint8_t max)
+{
+    return value > max && value != TSR_MATCH_TEST_OFF;
+}
+
+/* Of resolved values. */
+static const char *bad_field(const struct tsr_match_config *config)
+{
+    if (config->width < TSR_MATCH_DISPARITIES_MIN || config->width > TSR_IMAGE_WIDTH_MAX) {
+        return "width";
+    }
+    if (config->height < WINDOW_MIN || config->height > TSR_IMAGE_HEIGHT_MAX) {
+        return "height";
+    }
+    if (config->disparities < TSR_MATCH_DISPARITIES_MIN || config->disparities > TSR_DISPARITY_COUNT_MAX ||
+        config->disparities % TSR_MATCH_LANES != 0 || config->disparities > config->width) {
+        return "disparities";
+    }
+    if (config->window < WINDOW_MIN || config->window > TSR_MATCH_WINDOW_MAX || config->window % 2 == 0 ||
+        config->window > config->height) {
+        return "window";
+    }
+    if (config->prefilter_cap * config->window > CAP_ROOM) {
+        return "prefilter_cap";
+    }
+    if (is_above(config->uniqueness_percent, UNIQUENESS_MAX)) {
+        return "uniqueness_percent";
+    }
+    if (is_above(config->texture_min, TEST_MAX)) {
+        return "texture_min";
+    }
+    if (is_above(config->lr_tolerance_px, TEST_MAX)) {
+        return "lr_tolerance_px";
+    }
+    int room = config->width - config->disparities;
+    if (config->search_start_px < -room || config->search_start_px > room) {
+        return "search_start_px";
+    }
+    return NULL;
+}
+
+enum tsr_status tsr_match_check(const struct tsr_match_config *config, const char **field)
+{
+    const char *bad = "config";
+    if (config != NULL) {
+        struct tsr_match_config resolved = resolve(config);
+        bad = bad_field(&resolved);
+    }
+    if (bad != NULL && field != NULL) {
+        *field = bad;
+    }
+    return bad == NULL ? TSR_OK : TSR_ERR_ARG;
+}
+
+size_t tsr_match_scratch_len(const struct tsr_match_config *config)
+{
+    if (tsr_match_check(config, NULL) != TSR_OK) {
+        return 0;
+    }
+    struct tsr_match_config resolved = resolve(config);
+    return TSR_MATCH_SCRATCH_LEN(resolved.width, resolved.disparities);
+}
+
+size_t tsr_match_pair_len(const struct tsr_match_config *config)
+{
+    if (tsr_match_check(config, NULL) != TSR_OK) {
+        return 0;
+    }
+    struct tsr_match_config resolved = resolve(config);
+    return TSR_MATCH_PAIR_LEN(resolved.width, resolved.height, resolved.window);
+}
+
+struct tsr_gray tsr_match_pair_left(uint8_t *pair, const struct tsr_match_config *config)
+{
+    unsigned rows_above = resolve(config).window / 2u + 1u;
+    struct tsr_gray left = {pair + 2u * (size_t)config->width * rows_above, config->width, config->height,
+                            (uint16_t)(2u * config->width)};
+    return left;
+}
+
+struct tsr_gray tsr_match_pair_right(uint8_t *pair, const struct tsr_match_config *config)
+{
+    struct tsr_gray right = tsr_match_pair_left(pair, config);
+    right.pixels += config->width;
+    return right;
+}
+
+uint16_t *tsr_match_pair_map(uint8_t *pair)
+{
+    return (uint16_t *)(void *)pair;
+}
+
+struct tsr_match_scratch tsr_match_share_scratch(const struct tsr_match *match)
+{
+    size_t width = match->config.width;
+    size_t disparities = match->config.disparities;
+    struct tsr_match_scratch scratch;
+    scratch.sums = (int16_t *)(void *)match->scratch;
+    scratch.offered = scratch.sums + disparities;
+    scratch.columns = (uint8_t *)(scratch.offered + disparities);
+    scratch.right_cost = (uint16_t *)(void *)(scratch.columns + width * disparities);
+    scratch.right_d = (uint8_t *)(scratch.right_cost + width);
+    scratch.left_d = scratch.right_d + width;
+    scratch.texture = scratch.left_d + width;
+    return scratch;
+}
+
+/* A map row may be written once the frame rows below its end are all that is
+ * still read. Both ends grow linearly with y: the first and the last row decide. */
+static bool may_overlay(const struct tsr_match_config *config, const struct tsr_gray *frame, const uint16_t *map)
+{
+    uintptr_t map_at = (uintptr_t)map;
+    uintptr_t frame_at = (uintptr_t)frame->pixels;
+    size_t map_row_len = sizeof(uint16_t) * config->width;
+    size_t radius = config->window / 2u;
+    size_t last = config->height - 1u;
+    bool apart =
+        map_at + map_row_len * config->height <= frame_at || frame_at + frame->stride * last + config->width <= map_at;
+    bool behind = map_at + map_row_len * (radius + 1u) <= frame_at &&
+                  map_at + map_row_len * (last + 1u) <= frame_at + frame->stride * (last - radius);
+    return apart || behind;
+}
+
+static bool has_shape(const struct tsr_gray *frame, const struct tsr_match_config *config)
+{
+    return frame->width == config->width && frame->height == config->height && frame->stride >= config->width;
+}
+
+enum tsr_status tsr_match_start(struct tsr_match *match, const struct tsr_match_config *config, struct tsr_gray left,
+                                struct tsr_gray right, uint16_t *map, size_t map_cap, uint8_t *scratch,
+                                size_t scratch_cap)
+{
+    if (match == NULL || left.pixels == NULL || right.pixels == NULL || map == NULL || scratch == NULL ||
+        tsr_match_check(config, NULL) != TSR_OK || (uintptr_t)map % sizeof(uint16_t) != 0 ||
+        (uintptr_t)scratch % TSR_MATCH_SCRATCH_ALIGN != 0) {
+        return TSR_ERR_ARG;
+    }
+    struct tsr_match_config resolved = resolve(config);
+    if (!has_shape(&left, &resolved) || !has_shape(&right, &resolved)) {
+        return TSR_ERR_SIZE;
+    }
+    if (map_cap < (size_t)resolved.width * resolved.height || scratch_cap < tsr_match_scratch_len(config)) {
+        return TSR_ERR_NOBUF;
+    }
+    if (!may_overlay(&resolved, &left, map) || !may_overlay(&resolved, &right, map)) {
+        return TSR_ERR_ARG;
+    }
+    *match = (struct tsr_match){resolved, left, right, map, scratch, 0};
+    return TSR_OK;
+}
+
+static void warm_up(const struct tsr_match *match, unsigned row, unsigned radius)
+{
+    if (row == 0) {
+        struct tsr_match_scratch scratch = tsr_match_share_scratch(match);
+        memset(scratch.columns, 0, (size_t)match->config.width * match->config.disparities);
+        memset(scratch.texture, 0, match->config.width);
+    }
+    tsr_match_add_row(match, row, row == 0 ? radius + 2u : 1u);
+}
+
+static void match_row(const struct tsr_match *match, unsigned y, unsigned radius)
+{
+    unsigned last = match->config.height - 1u;
+    unsigned enter = y + radius < last ? y + radius : last;
+    unsigned leave = y > radius ? y - radius - 1u : 0u;
+    tsr_match_move_columns(match, enter, leave);
+    tsr_match_finish_row(match, y);
+}
+
+enum tsr_status tsr_match_run(struct tsr_match *match, uint16_t rows)
+{
+    if (match == NULL || rows == 0) {
+        return TSR_ERR_ARG;
+    }
+    unsigned height = match->config.height;
+    unsigned radius = match->config.window / 2u;
+    uint16_t total = tsr_match_rows_total(match);
+    for (; rows > 0 && match->rows_done < total; rows--, match->rows_done++) {
+        unsigned row = match->rows_done;
+        if (row < height) {
+            tsr_match_prefilter_row(match, row);
+        } else if (row < height + radius) {
+            warm_up(match, row - height, radius);
+        } else {
+            match_row(match, row - height - radius, radius);
+        }
+    }
+    return match->rows_done < total ? TSR_AGAIN : TSR_OK;
+}
+
+uint16_t tsr_match_rows_done(const struct tsr_match *match)
+{
+    return match->rows_done;
+}
+
+uint16_t tsr_match_rows_total(const struct tsr_match *match)
+{
+    return (uint16_t)(2u * match->config.height + match->config.window / 2u);
+}

@@ -1,0 +1,60 @@
+/*
+ * The stages of the matcher, and how they share the scratch buffer.
+ *
+ *   sums      int16_t [D]     S(x,y,.) of one pixel
+ *   offered   int16_t [D]     the same with what the pixel cannot search masked
+ *   columns   uint8_t [W][D]  column sums of A, see tsr_match_add_row()
+ *   right_cost  uint16_t [W]  least sum of the left pixels that chose this right pixel
+ *   right_d   uint8_t [W]     the disparity of that left pixel
+ *   left_d    uint8_t [W]     d* of every left pixel of the row
+ *   texture   uint8_t [W]     column sums of |P_left - cap|
+ *
+ * The prefilter runs before all this and uses the room of columns for the
+ * unfiltered rows above (left and right) and a row of vertical sums.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_VISION_MATCH_STAGES_H
+#define TSR_VISION_MATCH_STAGES_H
+
+#include "tsr/vision/match.h"
+
+/* Lanes handled at once in loops over d; D is a multiple of it. */
+#define TSR_MATCH_LANES 8u
+
+struct tsr_match_scratch {
+    int16_t *sums;
+    int16_t *offered;
+    uint8_t *columns;
+    uint16_t *right_cost;
+    uint8_t *right_d;
+    uint8_t *left_d;
+    uint8_t *texture;
+};
+
+struct tsr_match_scratch tsr_match_share_scratch(const struct tsr_match *match);
+
+/* Replace row y of both frames by eq. (10); the right one is stored mirrored,
+ * so that ascending d reads ascending addresses. Rows in ascending order. */
+void tsr_match_prefilter_row(const struct tsr_match *match, unsigned y);
+
+/* Column sums times + one more row: columns[x][d] += times A(clip(x), y, d). */
+void tsr_match_add_row(const struct tsr_match *match, unsigned y, unsigned times);
+
+/* Move the column sums down: add row y_new, take row y_old away. */
+void tsr_match_move_columns(const struct tsr_match *match, unsigned y_new, unsigned y_old);
+
+/* Row y of the map from the column sums around it: eqs. (12) to (17). */
+void tsr_match_finish_row(const struct tsr_match *match, unsigned y);
+
+/* The least of the offered sums, the lowest d that has it, and how many are
+ * within a limit. Sums lie in 0 .. TSR_MATCH_SUM_NONE. */
+#define TSR_MATCH_SUM_NONE INT16_C(0x7fff)
+struct tsr_match_winner {
+    int16_t sum;
+    uint8_t d;
+};
+struct tsr_match_winner tsr_match_find_winner(const int16_t *sums, unsigned disparities);
+unsigned tsr_match_count_within(const int16_t *sums, unsigned disparities, int16_t limit);
+
+#endif

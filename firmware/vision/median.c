@@ -1,0 +1,92 @@
+/*
+ * 3x3 median of a disparity map, in place: the rows that are already
+ * overwritten are read from copies.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include "tsr/vision/median.h"
+
+#include <stdbool.h>
+#include <string.h>
+
+#define NEIGHBOURS_MAX 9
+
+/* The nearest rows before the median; NULL outside the map. */
+struct rows {
+    const uint16_t *row[3];
+};
+
+enum tsr_status tsr_median_start(struct tsr_median *median, uint16_t width, uint16_t height, uint16_t *map,
+                                 size_t map_cap, uint8_t *scratch, size_t scratch_cap)
+{
+    if (median == NULL || map == NULL || scratch == NULL || (uintptr_t)map % sizeof(uint16_t) != 0 ||
+        (uintptr_t)scratch % TSR_MEDIAN_SCRATCH_ALIGN != 0 || width == 0 || width > TSR_IMAGE_WIDTH_MAX ||
+        height == 0 || height > TSR_IMAGE_HEIGHT_MAX) {
+        return TSR_ERR_ARG;
+    }
+    if (map_cap < (size_t)width * height || scratch_cap < TSR_MEDIAN_SCRATCH_LEN(width)) {
+        return TSR_ERR_NOBUF;
+    }
+    *median = (struct tsr_median){map, scratch, width, height, 0};
+    return TSR_OK;
+}
+
+/* Insert a value into the first count ones, which ascend. */
+static void insert_ascending(uint16_t *values, unsigned count, uint16_t value)
+{
+    unsigned i = count;
+    for (; i > 0 && values[i - 1] > value; i--) {
+        values[i] = values[i - 1];
+    }
+    values[i] = value;
+}
+
+static uint16_t filter_pixel(const struct rows *rows, unsigned x, unsigned width)
+{
+    uint16_t values[NEIGHBOURS_MAX];
+    unsigned count = 0;
+    unsigned first = x > 0 ? x - 1u : 0u;
+    unsigned last = x + 1u < width ? x + 1u : x;
+    for (unsigned i = 0; i < 3; i++) {
+        for (unsigned column = first; rows->row[i] != NULL && column <= last; column++) {
+            uint16_t value = rows->row[i][column];
+            if (value != TSR_DISPARITY_INVALID) {
+                insert_ascending(values, count++, value);
+            }
+        }
+    }
+    bool was_valid = rows->row[1][x] != TSR_DISPARITY_INVALID;
+    unsigned needed = was_valid ? TSR_MEDIAN_VALID_MIN : TSR_MEDIAN_FILL_MIN;
+    return count >= needed ? values[(count - 1u) / 2u] : TSR_DISPARITY_INVALID;
+}
+
+/* Scratch holds rows y - 1 and y as they were, at y's parity; each row is saved
+ * just before it is overwritten. */
+static void filter_row(const struct tsr_median *median, unsigned y)
+{
+    size_t width = median->width;
+    uint16_t *saved[2] = {(uint16_t *)(void *)median->scratch, (uint16_t *)(void *)median->scratch + width};
+    uint16_t *row = median->map + (size_t)y * width;
+    memcpy(saved[y % 2u], row, sizeof *row * width);
+    struct rows rows = {
+        {y > 0 ? saved[(y + 1u) % 2u] : NULL, saved[y % 2u], y + 1u < median->height ? row + width : NULL}};
+    for (unsigned x = 0; x < width; x++) {
+        row[x] = filter_pixel(&rows, x, median->width);
+    }
+}
+
+enum tsr_status tsr_median_run(struct tsr_median *median, uint16_t rows)
+{
+    if (median == NULL || rows == 0) {
+        return TSR_ERR_ARG;
+    }
+    for (; rows > 0 && median->rows_done < median->height; rows--, median->rows_done++) {
+        filter_row(median, median->rows_done);
+    }
+    return median->rows_done < median->height ? TSR_AGAIN : TSR_OK;
+}
+
+uint16_t tsr_median_rows_done(const struct tsr_median *median)
+{
+    return median->rows_done;
+}
