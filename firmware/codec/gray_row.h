@@ -1,0 +1,24 @@
+/*
+ * The pixel model of the gray-image codec, docs/codec.md, chapter 3.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_CODEC_GRAY_ROW_H
+#define TSR_CODEC_GRAY_ROW_H
+
+#include "range_port.h"
+#include "tsr/codec/gray.h"
+
+/* An image that has cost this much more than its literal size is stored literally until it is cheap again. */
+#define TSR_GRAY_SLACK_LEN 256u
+
+/* Forget everything; scratch and info are set by the caller. */
+void tsr_gray_model_reset(struct tsr_gray_model *model);
+
+/* Pixels of row model->row: the encoder fills them before, the coder replaces them by the decoded ones. */
+uint8_t *tsr_gray_row_pixels(const struct tsr_gray_model *model);
+
+/* Code the row and step to the next. */
+void tsr_gray_code_row(struct tsr_gray_model *model, const struct tsr_range_port *port);
+
+#endif

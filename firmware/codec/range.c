@@ -1,0 +1,195 @@
+/*
+ * Adaptive binary range coder.
+ *
+ * The encoder's low is the lower 32 bits of a number whose upper bytes are
+ * already in out: a carry is added there. Such a carry runs over bytes 0xff and
+ * leaves zeros, so its cost is constant on average.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include "tsr/codec/range.h"
+
+#define RANGE_FIRST 0xffffffffu
+#define RANGE_LOW_END (1u << 24) /* renormalise below this */
+#define P_HALF_Q16 0x8000u
+#define P_MIN_Q16 32u /* 2^-11 */
+#define P_MAX_Q16 (65536u - P_MIN_Q16)
+#define COUNT_MAX 60u
+
+/* Share of the error learned after n bits: floor(655360 / (10 n + 16)), UQ0.16.
+ * 1 / (n + 1.6) is close to the mean of all bits seen; the last entry makes it
+ * a window of about 60 bits. */
+static const uint16_t rates_q16[COUNT_MAX + 1] = {
+    40960, 25206, 18204, 14246, 11702, 9929, 8623, 7620, 6826, 6182, 5649, 5201, 4818, 4488, 4201, 3947,
+    3723,  3523,  3343,  3181,  3034,  2899, 2776, 2664, 2560, 2463, 2374, 2291, 2214, 2141, 2073, 2010,
+    1950,  1894,  1840,  1790,  1742,  1697, 1654, 1614, 1575, 1538, 1503, 1469, 1437, 1406, 1376, 1348,
+    1321,  1295,  1270,  1245,  1222,  1200, 1178, 1157, 1137, 1118, 1099, 1081, 1063};
+
+void tsr_range_bits_reset(struct tsr_range_bit *bits, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        bits[i].p_one_q16 = P_HALF_Q16;
+        bits[i].count = 0;
+    }
+}
+
+static void learn(struct tsr_range_bit *context, unsigned bit)
+{
+    const uint32_t rate_q16 = rates_q16[context->count];
+    const uint32_t p = context->p_one_q16;
+    if (bit != 0) {
+        context->p_one_q16 = (uint16_t)(p + (((P_MAX_Q16 - p) * rate_q16) >> 16));
+    } else {
+        context->p_one_q16 = (uint16_t)(p - (((p - P_MIN_Q16) * rate_q16) >> 16));
+    }
+    if (context->count < COUNT_MAX) {
+        context->count++;
+    }
+}
+
+void tsr_range_encode_start(struct tsr_range_encoder *encoder, uint8_t *out, size_t cap)
+{
+    encoder->out = out;
+    encoder->cap = cap;
+    encoder->at = 0;
+    encoder->low = 0;
+    encoder->range = RANGE_FIRST;
+}
+
+/* low += amount; a carry goes into the bytes before it. The number stays below
+ * 1, so a carry always meets a byte that is not 0xff, unless bytes beyond cap
+ * are missing from the chain: then the stream is lost anyway. */
+static void raise_low(struct tsr_range_encoder *encoder, uint32_t amount)
+{
+    encoder->low += amount;
+    if (encoder->low >= amount || encoder->at > encoder->cap) {
+        return;
+    }
+    size_t i = encoder->at;
+    while (i > 0 && ++encoder->out[i - 1] == 0) {
+        i--;
+    }
+}
+
+static void shift_out(struct tsr_range_encoder *encoder)
+{
+    if (encoder->at < encoder->cap) {
+        encoder->out[encoder->at] = (uint8_t)(encoder->low >> 24);
+    }
+    encoder->at++;
+    encoder->low <<= 8;
+}
+
+static void renormalise_encoder(struct tsr_range_encoder *encoder)
+{
+    while (encoder->range < RANGE_LOW_END) {
+        shift_out(encoder);
+        encoder->range <<= 8;
+    }
+}
+
+void tsr_range_encode_bit(struct tsr_range_encoder *encoder, struct tsr_range_bit *context, unsigned bit)
+{
+    const uint32_t bound = (encoder->range >> 16) * context->p_one_q16;
+    if (bit != 0) {
+        encoder->range = bound;
+    } else {
+        raise_low(encoder, bound);
+        encoder->range -= bound;
+    }
+    learn(context, bit);
+    renormalise_encoder(encoder);
+}
+
+void tsr_range_encode_direct(struct tsr_range_encoder *encoder, uint32_t value, unsigned bit_count)
+{
+    encoder->range >>= bit_count;
+    raise_low(encoder, encoder->range * (value & ((1u << bit_count) - 1u)));
+    renormalise_encoder(encoder);
+}
+
+/* The number in [low, low + range) with the most zero bytes at its end becomes the tail. */
+enum tsr_status tsr_range_encode_finish(struct tsr_range_encoder *encoder, size_t *len)
+{
+    unsigned tail_len = 0;
+    uint32_t rise = 0;
+    for (; tail_len < TSR_RANGE_FINISH_LEN_MAX; tail_len++) {
+        const uint32_t below = UINT32_MAX >> (8 * tail_len);
+        rise = (below - encoder->low + 1u) & below;
+        if (rise < encoder->range) {
+            break;
+        }
+        rise = 0;
+    }
+    raise_low(encoder, rise);
+    for (unsigned i = 0; i < tail_len; i++) {
+        shift_out(encoder);
+    }
+    if (encoder->at > encoder->cap) {
+        return TSR_ERR_NOBUF;
+    }
+    while (encoder->at > 0 && encoder->out[encoder->at - 1] == 0) {
+        encoder->at--;
+    }
+    *len = encoder->at;
+    return TSR_OK;
+}
+
+/* at counts what the encoder has shifted out; the decoder has read 4 bytes more. */
+static uint32_t next_byte(const struct tsr_range_decoder *decoder, size_t ahead)
+{
+    const size_t i = decoder->at + ahead;
+    return i < decoder->len ? decoder->bytes[i] : 0u;
+}
+
+void tsr_range_decode_start(struct tsr_range_decoder *decoder, const uint8_t *bytes, size_t len)
+{
+    decoder->bytes = bytes;
+    decoder->len = len;
+    decoder->at = 0;
+    decoder->range = RANGE_FIRST;
+    decoder->offset = 0;
+    for (size_t i = 0; i < 4; i++) {
+        decoder->offset = decoder->offset << 8 | next_byte(decoder, i);
+    }
+}
+
+static void renormalise_decoder(struct tsr_range_decoder *decoder)
+{
+    while (decoder->range < RANGE_LOW_END) {
+        decoder->offset = decoder->offset << 8 | next_byte(decoder, 4);
+        decoder->at++;
+        decoder->range <<= 8;
+    }
+}
+
+unsigned tsr_range_decode_bit(struct tsr_range_decoder *decoder, struct tsr_range_bit *context)
+{
+    const uint32_t bound = (decoder->range >> 16) * context->p_one_q16;
+    const unsigned bit = decoder->offset < bound;
+    if (bit != 0) {
+        decoder->range = bound;
+    } else {
+        decoder->offset -= bound;
+        decoder->range -= bound;
+    }
+    learn(context, bit);
+    renormalise_decoder(decoder);
+    return bit;
+}
+
+uint32_t tsr_range_decode_direct(struct tsr_range_decoder *decoder, unsigned bit_count)
+{
+    decoder->range >>= bit_count;
+    uint32_t value = 0;
+    for (unsigned i = bit_count; i > 0; i--) {
+        const uint32_t half = decoder->range << (i - 1);
+        value <<= 1;
+        if (decoder->offset >= half) {
+            decoder->offset -= half;
+            value |= 1u;
+        }
+    }
+    renormalise_decoder(decoder);
+    return value;
+}
