@@ -1,0 +1,27 @@
+/*
+ * Files that appear complete or not at all: the bytes go to a temporary name
+ * in the same folder, reach the disk (fsync), and take the final name by
+ * rename(2). An existing file stays whole until that instant.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_HOST_ATOMIC_FILE_H
+#define TSR_HOST_ATOMIC_FILE_H
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+namespace tsr
+{
+
+/* mode is the file's permission bits, exact (umask does not apply).
+ * Throws InputError naming file; the temporary is gone then. */
+void write_file_atomically(const std::filesystem::path &file, std::span<const std::uint8_t> bytes,
+                           unsigned mode = 0644);
+void write_file_atomically(const std::filesystem::path &file, std::string_view text, unsigned mode = 0644);
+
+} // namespace tsr
+
+#endif

@@ -1,0 +1,134 @@
+/*
+ * A site: one deployment, read from site.toml (docs/units.md lists every field
+ * with unit, range and default; keys live in a file of their own, keys.h).
+ *
+ * Camera axes: x right, y down, z forward. A pose takes camera coordinates to
+ * site coordinates, p_site = R p_camera + position, R row-major.
+ *
+ * Depth of a pair: Z = f B / (d + d0). The node matches left pixel (x, y) with
+ * right pixel (x - d - search_start, y), so
+ *
+ *   d0 = search_start + cx_right - cx_left
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_HOST_SITE_H
+#define TSR_HOST_SITE_H
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tsr
+{
+
+inline constexpr std::uint16_t kNodeNone = 0; /* no such node: a gateway's parent, a binocular pair's wing */
+inline constexpr std::uint16_t kNodeIdMax = 0xfffd;
+
+enum class Role {
+    gateway,  /* the root of the tree; joined to the sink by the gateway link */
+    relay,    /* passes on what its children send */
+    lead,     /* the node of a pair that matches; its camera is the left one */
+    wing,     /* its partner, one hop away; sends its view to the lead */
+    binocular /* two sensors on one board: left and right */
+};
+
+std::string_view role_name(Role role);
+
+struct SiteRadio { /* the emulator's link budget */
+    double tx_power_dbm = 0.0;
+    double reference_loss_db = 40.0; /* at 1 m */
+    double path_loss_exponent = 3.0;
+    double sensitivity_dbm = -95.0;
+    double frame_loss = 0.0; /* 0 .. 1, independent of the distance */
+};
+
+/* When is a frame a change, when are two maps the same scene (docs/math.md, eq. (6) to (9) and (20) to (22))?
+ * The node and the sink apply the same rule to maps. */
+struct SiteThresholds {
+    double similarity_px2 = 2.0;         /* mean squared difference above which a block differs, 0 .. clip^2 */
+    double similarity_clip_px = 2.0;     /* a difference counts as at most this, 1/16 .. 15.9375 */
+    int similarity_blocks = 2;           /* differing blocks that make two maps differ, >= 1 */
+    double similarity_overlap_min = 0.5; /* sink: below this part of pixels valid in both, of those in either: differ */
+    int change_deviation_min = 6;        /* gray levels, 1 .. 127 */
+    int change_cells_min = 0;            /* changed cells that wake the pair; 0 = the node's default */
+};
+
+struct SiteNode {
+    std::uint16_t id = kNodeNone;
+    std::string name; /* "node <id>" if the file gives none */
+    Role role = Role::relay;
+    std::uint16_t parent = kNodeNone;
+    std::array<double, 3> position_m{};
+    std::filesystem::path frames;       /* folder of the lead's, wing's or left camera's frames; may be empty */
+    std::filesystem::path frames_right; /* binocular only */
+    std::uint32_t watch_period_ms = 1000;
+    int line = 0; /* in site.toml; 0 = built in memory */
+};
+
+struct SitePose {
+    std::array<double, 3> position_m{};
+    std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};
+};
+
+struct SitePair {
+    std::string name;
+    std::uint16_t lead = kNodeNone; /* or the binocular node */
+    std::uint16_t wing = kNodeNone; /* kNodeNone for a binocular node */
+    int width = 160;
+    int height = 120;
+    int disparities = 32;     /* searched: 0 .. disparities - 1 px */
+    int search_start_px = 0;  /* the right view is shifted by this much on the node */
+    double d0_px = 0.0;       /* signed; site.toml may leave it out, see above */
+    double focal_px = 0.0;    /* of the rectified pair */
+    double baseline_mm = 0.0; /* distance of the two cameras */
+    std::array<double, 2> principal_px{};
+    SitePose left;
+    std::optional<SitePose> right;
+    double step_px = 0.25;       /* the map's disparity step: 1/16, 1/8, 1/4, 1/2 or 1 */
+    bool reference_image = true; /* send the gray left image that colours the map */
+    int reference_near = 4;      /* its largest error in gray levels, 0 (lossless) .. 7 */
+    std::filesystem::path truth; /* folder of PFM ground truth, for reports; may be empty */
+    int line = 0;
+};
+
+struct Site {
+    std::filesystem::path file; /* where it was read from; errors name it */
+    std::string name;
+    std::uint16_t pan_id = 0xbeef;
+    int channel = 15; /* IEEE 802.15.4, 2.4 GHz: 11 .. 26 */
+    std::uint64_t seed = 1;
+    SiteRadio radio;
+    SiteThresholds thresholds;
+    std::vector<SiteNode> nodes;
+    std::vector<SitePair> pairs;
+
+    const SiteNode *node(std::uint16_t id) const;             /* null: no such node */
+    const SiteNode &gateway() const;                          /* of a checked site */
+    const SitePair *pair_of(std::uint16_t camera_node) const; /* by lead, wing or binocular id; null: none */
+    /* A folder of the file, relative to site.toml's own folder. */
+    std::filesystem::path resolve(const std::filesystem::path &folder) const;
+};
+
+/* Reads and checks file. Throws InputError: "site.toml:LINE: pair 'porch': right.rotation: reason". */
+Site load_site(const std::filesystem::path &file);
+
+/*
+ * Refuses a site that cannot work: ids outside 1..0xfffd or used twice, an
+ * unknown parent, a cycle, other than one gateway, a wing whose parent is not
+ * its lead, a camera node without a pair, a pair of nodes that do not exist or
+ * have other roles, cameras that are not rectified, numbers out of range.
+ * Throws InputError for the first fault found.
+ */
+void check_site(const Site &site);
+
+/* Writes site as TOML that load_site() reads back equal. Throws InputError. */
+void write_site(const std::filesystem::path &file, const Site &site);
+
+} // namespace tsr
+
+#endif

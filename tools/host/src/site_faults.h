@@ -1,0 +1,28 @@
+/*
+ * Refusing a site with the place of the fault.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_HOST_SITE_FAULTS_H
+#define TSR_HOST_SITE_FAULTS_H
+
+#include <string>
+
+#include "tsr/host/site.h"
+
+namespace tsr
+{
+
+[[noreturn]] void refuse_site(const Site &site, int line, const std::string &field, const std::string &reason);
+[[noreturn]] void refuse_node(const Site &site, const SiteNode &node, const std::string &field,
+                              const std::string &reason);
+[[noreturn]] void refuse_pair(const Site &site, const SitePair &pair, const std::string &field,
+                              const std::string &reason);
+
+/* The cameras of a pair: rotations that are rotations, a right camera that
+ * stands where the baseline says and looks the same way. Throws InputError. */
+void check_pair_geometry(const Site &site, const SitePair &pair);
+
+} // namespace tsr
+
+#endif

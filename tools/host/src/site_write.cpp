@@ -1,0 +1,148 @@
+/* Site to site.toml. SPDX-License-Identifier: Apache-2.0 */
+#include <array>
+#include <charconv>
+#include <span>
+#include <string>
+
+#include "tsr/host/atomic_file.h"
+#include "tsr/host/site.h"
+
+namespace tsr
+{
+namespace
+{
+
+/* The shortest text that reads back as the same double. */
+std::string number(double value)
+{
+    std::array<char, 32> text{};
+    const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
+    return {text.data(), result.ptr};
+}
+
+std::string quoted(const std::string &text)
+{
+    constexpr std::string_view kHex = "0123456789abcdef";
+    std::string result = "\"";
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\') {
+            result += '\\';
+            result += c;
+        } else if (byte < 0x20 || byte == 0x7f) {
+            result += "\\u00";
+            result += kHex[byte >> 4];
+            result += kHex[byte & 15];
+        } else {
+            result += c;
+        }
+    }
+    return result + "\"";
+}
+
+std::string list(std::span<const double> values)
+{
+    std::string text = "[";
+    for (std::size_t i = 0; i < values.size(); i++) {
+        text += (i == 0 ? "" : ", ") + number(values[i]);
+    }
+    return text + "]";
+}
+
+std::string line(const std::string &field, const std::string &value)
+{
+    return field + " = " + value + "\n";
+}
+
+std::string head_text(const Site &site)
+{
+    std::string text = "[site]\n";
+    text += line("name", quoted(site.name));
+    text += line("pan_id", std::to_string(site.pan_id));
+    text += line("channel", std::to_string(site.channel));
+    text += line("seed", std::to_string(site.seed));
+    text += "\n[radio]\n";
+    text += line("tx_power_dbm", number(site.radio.tx_power_dbm));
+    text += line("reference_loss_db", number(site.radio.reference_loss_db));
+    text += line("path_loss_exponent", number(site.radio.path_loss_exponent));
+    text += line("sensitivity_dbm", number(site.radio.sensitivity_dbm));
+    text += line("frame_loss", number(site.radio.frame_loss));
+    const SiteThresholds &limits = site.thresholds;
+    text += "\n[thresholds]\n";
+    text += line("similarity_px2", number(limits.similarity_px2));
+    text += line("similarity_clip_px", number(limits.similarity_clip_px));
+    text += line("similarity_blocks", std::to_string(limits.similarity_blocks));
+    text += line("similarity_overlap_min", number(limits.similarity_overlap_min));
+    text += line("change_deviation_min", std::to_string(limits.change_deviation_min));
+    text += line("change_cells_min", std::to_string(limits.change_cells_min));
+    return text;
+}
+
+std::string node_text(const SiteNode &node)
+{
+    std::string text = "\n[[node]]\n";
+    text += line("id", std::to_string(node.id));
+    text += line("name", quoted(node.name));
+    text += line("role", quoted(std::string(role_name(node.role))));
+    if (node.parent != kNodeNone) {
+        text += line("parent", std::to_string(node.parent));
+    }
+    text += line("position_m", list(node.position_m));
+    if (!node.frames.empty()) {
+        text += line("frames", quoted(node.frames.string()));
+    }
+    if (!node.frames_right.empty()) {
+        text += line("frames_right", quoted(node.frames_right.string()));
+    }
+    return text + line("watch_period_ms", std::to_string(node.watch_period_ms));
+}
+
+std::string pose_text(const std::string &side, const SitePose &pose)
+{
+    return side + " = { position_m = " + list(pose.position_m) + ", rotation = " + list(pose.rotation) + " }\n";
+}
+
+std::string pair_text(const SitePair &pair)
+{
+    std::string text = "\n[[pair]]\n";
+    text += line("name", quoted(pair.name));
+    text += line("lead", std::to_string(pair.lead));
+    if (pair.wing != kNodeNone) {
+        text += line("wing", std::to_string(pair.wing));
+    }
+    text += line("width", std::to_string(pair.width));
+    text += line("height", std::to_string(pair.height));
+    text += line("disparities", std::to_string(pair.disparities));
+    text += line("search_start_px", std::to_string(pair.search_start_px));
+    text += line("d0_px", number(pair.d0_px));
+    text += line("focal_px", number(pair.focal_px));
+    text += line("baseline_mm", number(pair.baseline_mm));
+    text += line("principal_px", list(pair.principal_px));
+    text += pose_text("left", pair.left);
+    if (pair.right) {
+        text += pose_text("right", *pair.right);
+    }
+    text += line("step_px", number(pair.step_px));
+    text += line("reference_image", pair.reference_image ? "true" : "false");
+    text += line("reference_near", std::to_string(pair.reference_near));
+    if (!pair.truth.empty()) {
+        text += line("truth", quoted(pair.truth.string()));
+    }
+    return text;
+}
+
+} // namespace
+
+void write_site(const std::filesystem::path &file, const Site &site)
+{
+    std::string text = head_text(site);
+    for (const SiteNode &node : site.nodes) {
+        text += node_text(node);
+    }
+    for (const SitePair &pair : site.pairs) {
+        text += pair_text(pair);
+    }
+    write_file_atomically(file, text);
+}
+
+} // namespace tsr
