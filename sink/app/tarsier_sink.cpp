@@ -1,0 +1,108 @@
+/*
+ * tarsier-sink: receives the maps of a site, stores them, and writes the cloud.
+ *
+ *   tarsier-sink site.toml --keys keys.toml --db sink.db --listen unix:/run/tarsier --out out
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include <filesystem>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "tsr/host/input_error.h"
+#include "tsr/host/keys.h"
+#include "tsr/host/site.h"
+#include "tsr/sink/export.h"
+#include "tsr/sink/gateway.h"
+#include "tsr/sink/receiver.h"
+
+namespace
+{
+
+struct Options {
+    std::filesystem::path site;
+    std::filesystem::path keys;
+    std::filesystem::path database;
+    std::filesystem::path out;
+    std::string listen;
+    bool export_only = false;
+    bool once = false;
+    bool quiet = false;
+};
+
+/* Throws CLI::ParseError. */
+void declare(CLI::App &app, Options &options)
+{
+    app.add_option("SITE", options.site, "site.toml")->required();
+    app.add_option("--keys", options.keys, "key file, mode 0600");
+    app.add_option("--db", options.database, "SQLite file; created if absent")->required();
+    app.add_option("--listen", options.listen, "unix:PATH, tcp:HOST:PORT or serial:DEVICE:BAUD");
+    app.add_option("--out", options.out, "folder for cloud.ply, maps/ and sink.json")->required();
+    app.add_flag("--export-only", options.export_only, "write --out from --db and stop");
+    app.add_flag("--once", options.once, "stop when the last gateway has disconnected");
+    app.add_flag("--quiet", options.quiet, "log warnings only");
+}
+
+void log_map(const tsr::MapReport &map)
+{
+    spdlog::info("map from node {} ({}): counter {}, {} + {} bytes, {}{}", map.node, map.pair, map.counter, map.map_len,
+                 map.reference_len, map.kept ? "kept" : "dropped",
+                 map.mse_px2 ? fmt::format(", MSE {:.4f} px^2", *map.mse_px2) : "");
+}
+
+tsr::SessionNumbers receive(const Options &options, const tsr::Site &site, tsr::Store &store)
+{
+    const tsr::KeyRing keys = tsr::load_keys(options.keys);
+    tsr::check_keys(keys, site, options.keys);
+    const tsr::ListenAddress address = tsr::parse_listen_address(options.listen);
+    if (keys.test && address.kind == tsr::ListenAddress::Kind::serial) {
+        throw tsr::InputError(options.keys.string(), "test", "test keys are refused for a board on a serial port");
+    }
+    tsr::Receiver receiver(site, keys, store);
+    receiver.on_map(log_map);
+    tsr::LinkServer server(receiver, site.pan_id);
+    tsr::GatewayOptions gateway;
+    gateway.once = options.once;
+    gateway.log = [](const std::string &line) { spdlog::info("{}", line); };
+    tsr::serve_gateways(address, server, gateway);
+    return {receiver.tally(), server.counts(), receiver.repeated()};
+}
+
+int run(const Options &options)
+{
+    spdlog::set_default_logger(spdlog::stderr_logger_st("tarsier-sink"));
+    spdlog::set_pattern("%v");
+    spdlog::set_level(options.quiet ? spdlog::level::warn : spdlog::level::info);
+    if (!options.export_only && (options.listen.empty() || options.keys.empty())) {
+        throw tsr::InputError("command line", "--listen and --keys", "are required without --export-only");
+    }
+    const tsr::Site site = tsr::load_site(options.site);
+    tsr::Store store(options.database, site.pan_id,
+                     options.export_only ? tsr::Store::Open::existing : tsr::Store::Open::create);
+    const tsr::SessionNumbers session = options.export_only ? tsr::SessionNumbers{} : receive(options, site, store);
+    const tsr::ExportResult result = tsr::export_site(site, store, session, options.out);
+    spdlog::info("{} maps and a cloud of {} points written to {}", result.maps, result.points, options.out.string());
+    return 0;
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    return tsr::run_program("tarsier-sink", [&] {
+        CLI::App app("Receives the maps of a Tarsier site, stores them, and writes the cloud.");
+        Options options;
+        declare(app, options);
+        try {
+            app.parse(argc, argv);
+        } catch (const CLI::Success &help) {
+            return app.exit(help);
+        } catch (const CLI::ParseError &error) {
+            throw tsr::InputError("command line", "", error.what());
+        }
+        return run(options);
+    });
+}

@@ -1,0 +1,34 @@
+/*
+ * A coded map and its coded reference image, decoded whole.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_SINK_DECODED_MAP_H
+#define TSR_SINK_DECODED_MAP_H
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tsr/host/image_file.h"
+
+extern "C" {
+#include "tsr/codec/map.h"
+}
+
+namespace tsr
+{
+
+struct DecodedMap {
+    tsr_map_info info{};
+    std::vector<std::uint16_t> disparity_q4; /* width * height, px, UQ12.4 or TSR_DISPARITY_INVALID */
+};
+
+/* Nothing if the bytes are no coded map or image of a version this build knows. Any bytes are safe. */
+std::optional<DecodedMap> decode_map(std::span<const std::uint8_t> coded);
+std::optional<GrayImage> decode_reference(std::span<const std::uint8_t> coded);
+
+} // namespace tsr
+
+#endif

@@ -1,0 +1,49 @@
+/* Whole maps and images out of the resumable codecs. SPDX-License-Identifier: Apache-2.0 */
+#include "tsr/sink/decoded_map.h"
+
+#include <memory>
+
+extern "C" {
+#include "tsr/codec/gray.h"
+}
+
+namespace tsr
+{
+
+std::optional<DecodedMap> decode_map(std::span<const std::uint8_t> coded)
+{
+    DecodedMap map;
+    if (tsr_map_read_info(coded.data(), coded.size(), &map.info) != TSR_OK) {
+        return std::nullopt;
+    }
+    const std::size_t width = map.info.width;
+    map.disparity_q4.resize(width * map.info.height);
+    std::vector<std::uint16_t> scratch(TSR_MAP_SCRATCH_COUNT(width));
+    const auto decoder = std::make_unique<tsr_map_decoder>();
+    if (tsr_map_decode_start(decoder.get(), coded.data(), coded.size(), scratch.data(), scratch.size(), &map.info) !=
+            TSR_OK ||
+        tsr_map_decode_rows(decoder.get(), map.disparity_q4.data(), width, map.info.height) != TSR_OK) {
+        return std::nullopt;
+    }
+    return map;
+}
+
+std::optional<GrayImage> decode_reference(std::span<const std::uint8_t> coded)
+{
+    tsr_gray_info info{};
+    if (tsr_gray_read_info(coded.data(), coded.size(), &info) != TSR_OK) {
+        return std::nullopt;
+    }
+    const std::size_t width = info.width;
+    GrayImage image{info.width, info.height, std::vector<std::uint8_t>(width * info.height)};
+    std::vector<std::uint8_t> scratch(TSR_GRAY_SCRATCH_LEN(width));
+    const auto decoder = std::make_unique<tsr_gray_decoder>();
+    if (tsr_gray_decode_start(decoder.get(), coded.data(), coded.size(), scratch.data(), scratch.size(), &info) !=
+            TSR_OK ||
+        tsr_gray_decode_rows(decoder.get(), image.pixels.data(), width, info.height) != TSR_OK) {
+        return std::nullopt;
+    }
+    return image;
+}
+
+} // namespace tsr

@@ -1,0 +1,26 @@
+/*
+ * Opening what --listen names.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_SINK_ENDPOINTS_H
+#define TSR_SINK_ENDPOINTS_H
+
+#include <string>
+
+#include "descriptor.h"
+#include "tsr/sink/listen_address.h"
+
+namespace tsr
+{
+
+/* A listening socket (Unix or TCP), non-blocking. A Unix socket left behind by
+ * a sink that died is replaced; one that is in use is refused. Throws InputError. */
+Descriptor open_listener(const ListenAddress &address);
+
+/* A serial port, raw and non-blocking. Throws InputError. */
+Descriptor open_serial(const ListenAddress &address);
+
+} // namespace tsr
+
+#endif

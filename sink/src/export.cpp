@@ -1,0 +1,162 @@
+/* Cloud, pictures and numbers. SPDX-License-Identifier: Apache-2.0 */
+#include "tsr/sink/export.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
+
+#include "tsr/host/atomic_file.h"
+#include "tsr/host/colour_map.h"
+#include "tsr/host/image_file.h"
+#include "tsr/host/input_error.h"
+#include "tsr/host/pfm.h"
+#include "tsr/host/ply.h"
+#include "tsr/sink/geometry.h"
+
+namespace tsr
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr int kJsonFormat = 1;
+
+struct NodeNumbers {
+    std::uint64_t kept = 0;
+    std::uint64_t dropped = 0;
+    std::uint64_t map_bytes = 0;
+    std::uint64_t reference_bytes = 0;
+};
+
+void make_folder(const fs::path &folder)
+{
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) {
+        throw InputError(folder.string(), "create", error.message());
+    }
+}
+
+std::string map_name(const StoredMap &stored)
+{
+    return fmt::format("{:05}-{:010}", stored.node, stored.counter);
+}
+
+void export_map(const StoredMap &stored, const DecodedMap &map, const fs::path &folder)
+{
+    const std::string name = map_name(stored);
+    const int width = map.info.width;
+    const int height = map.info.height;
+    write_pfm(folder / (name + ".pfm"), float_disparity(map.disparity_q4, width, height));
+    write_png(folder / (name + ".png"), colour_disparity(map.disparity_q4, width, height, map.info.disparities));
+    if (const auto reference = decode_reference(stored.coded_reference)) {
+        write_png(folder / (name + "-reference.png"), reference->view());
+    }
+}
+
+std::size_t export_cloud(const Site &site, const Store &store, const fs::path &file)
+{
+    std::vector<CloudPoint> cloud;
+    for (const SitePair &pair : site.pairs) {
+        const auto stored = store.last_kept(pair.lead);
+        const auto map = stored ? decode_map(stored->coded_map) : std::nullopt;
+        if (!map) {
+            continue;
+        }
+        const auto reference = decode_reference(stored->coded_reference);
+        const bool fits = reference && reference->size() == ImageSize{map->info.width, map->info.height};
+        const auto points = triangulate(PairGeometry(pair), *map, fits ? &*reference : nullptr);
+        cloud.insert(cloud.end(), points.begin(), points.end());
+    }
+    write_ply(file, cloud);
+    return cloud.size();
+}
+
+Json node_json(const SiteNode &node, const NodeNumbers &numbers)
+{
+    return {{"id", node.id},
+            {"name", node.name},
+            {"role", role_name(node.role)},
+            {"maps_received", numbers.kept + numbers.dropped},
+            {"maps_kept", numbers.kept},
+            {"maps_dropped", numbers.dropped},
+            {"map_bytes", numbers.map_bytes},
+            {"reference_bytes", numbers.reference_bytes}};
+}
+
+Json map_json(const StoredMap &stored)
+{
+    return {{"node", stored.node},
+            {"counter", stored.counter},
+            {"capture_time_us", stored.capture_time_us},
+            {"kept", stored.kept},
+            {"map_bytes", stored.coded_map.size()},
+            {"reference_bytes", stored.coded_reference.size()},
+            {"file", "maps/" + map_name(stored)}};
+}
+
+Json session_json(const SessionNumbers &session)
+{
+    Json refused = Json::object();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(Cause::cause_count); i++) {
+        const auto cause = static_cast<Cause>(i);
+        refused[std::string(cause_name(cause))] = session.tally.count(cause);
+    }
+    return {{"link",
+             {{"bytes_in", session.link.bytes_in},
+              {"bytes_out", session.link.bytes_out},
+              {"hellos", session.link.hellos},
+              {"uplinks", session.link.uplinks},
+              {"repeated_uplinks", session.link.repeated_uplinks}}},
+            {"repeated_messages", session.repeated_messages},
+            {"refused", refused}};
+}
+
+} // namespace
+
+ExportResult export_site(const Site &site, const Store &store, const SessionNumbers &session, const fs::path &out)
+{
+    const fs::path folder = out / "maps";
+    make_folder(folder);
+    std::map<std::uint16_t, NodeNumbers> numbers;
+    NodeNumbers total;
+    Json received = Json::array();
+    store.for_each([&](const StoredMap &stored) {
+        for (NodeNumbers *sum : {&numbers[stored.node], &total}) {
+            (stored.kept ? sum->kept : sum->dropped)++;
+            sum->map_bytes += stored.coded_map.size();
+            sum->reference_bytes += stored.coded_reference.size();
+        }
+        if (const auto map = decode_map(stored.coded_map)) {
+            export_map(stored, *map, folder);
+        }
+        received.push_back(map_json(stored));
+    });
+    ExportResult result;
+    result.maps = total.kept + total.dropped;
+    result.points = export_cloud(site, store, out / "cloud.ply");
+    Json json{{"format", kJsonFormat},
+              {"site", site.name},
+              {"maps",
+               {{"received", result.maps},
+                {"kept", total.kept},
+                {"dropped", total.dropped},
+                {"map_bytes", total.map_bytes},
+                {"reference_bytes", total.reference_bytes}}},
+              {"cloud_points", result.points},
+              {"received", std::move(received)},
+              {"nodes", Json::array()},
+              {"session", session_json(session)}};
+    for (const SiteNode &node : site.nodes) {
+        json["nodes"].push_back(node_json(node, numbers[node.id]));
+    }
+    write_file_atomically(out / "sink.json", json.dump(2) + "\n");
+    return result;
+}
+
+} // namespace tsr

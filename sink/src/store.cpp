@@ -1,0 +1,248 @@
+/* The sink's database. SPDX-License-Identifier: Apache-2.0 */
+#include "tsr/sink/store.h"
+
+#include <bit>
+#include <limits>
+#include <string>
+
+#include "statement.h"
+#include "tsr/host/input_error.h"
+
+namespace tsr
+{
+namespace
+{
+
+constexpr std::int64_t kApplicationId = 0x54535231; /* "TSR1", in the file's header: sqlite.org/fileformat.html */
+constexpr int kBusyTimeoutMs = 5000;
+
+/* 64-bit times are stored bit by bit in SQLite's signed integers. */
+constexpr const char *kSchema = "CREATE TABLE map ("
+                                " arrival INTEGER PRIMARY KEY AUTOINCREMENT,"
+                                " node INTEGER NOT NULL, counter INTEGER NOT NULL,"
+                                " capture_time_us INTEGER NOT NULL, capture_id INTEGER NOT NULL,"
+                                " kept INTEGER NOT NULL, mse_px2 REAL,"
+                                " coded_map BLOB NOT NULL, coded_reference BLOB NOT NULL,"
+                                " UNIQUE (node, counter));"
+                                "CREATE INDEX map_by_arrival ON map (node, kept, arrival);"
+                                "CREATE TABLE reservation (sealing_counter INTEGER NOT NULL);"
+                                "INSERT INTO reservation VALUES (1);"
+                                "CREATE TABLE site (pan_id INTEGER NOT NULL);";
+
+constexpr const char *kMapColumns =
+    "SELECT node, counter, capture_time_us, capture_id, kept, mse_px2, coded_map, coded_reference FROM map ";
+
+StoredMap row_of(const Statement &statement)
+{
+    StoredMap map;
+    map.node = static_cast<std::uint16_t>(statement.integer(0));
+    map.counter = static_cast<std::uint32_t>(statement.integer(1));
+    map.capture_time_us = std::bit_cast<std::uint64_t>(statement.integer(2));
+    map.capture_id = static_cast<std::uint16_t>(statement.integer(3));
+    map.kept = statement.integer(4) != 0;
+    if (!statement.is_null(5)) {
+        map.mse_px2 = statement.number(5);
+    }
+    map.coded_map = statement.bytes(6);
+    map.coded_reference = statement.bytes(7);
+    return map;
+}
+
+std::int64_t single_integer(const Connection &connection, const char *sql)
+{
+    Statement statement(connection, sql);
+    return statement.step() ? statement.integer(0) : 0;
+}
+
+void create_schema(const Connection &connection, std::uint16_t pan_id)
+{
+    connection.execute("BEGIN IMMEDIATE");
+    connection.execute(kSchema);
+    Statement site(connection, "INSERT INTO site VALUES (?1)");
+    site.bind(1, std::int64_t{pan_id}).step();
+    connection.execute(("PRAGMA application_id = " + std::to_string(kApplicationId)).c_str());
+    connection.execute(("PRAGMA user_version = " + std::to_string(Store::kSchemaVersion)).c_str());
+    connection.execute("COMMIT");
+}
+
+void check_schema(const Connection &connection, const std::filesystem::path &file, std::uint16_t pan_id)
+{
+    if (single_integer(connection, "PRAGMA application_id") != kApplicationId) {
+        throw InputError(file.string(), "application_id", "a database, but not a Tarsier sink's");
+    }
+    const std::int64_t version = single_integer(connection, "PRAGMA user_version");
+    if (version != Store::kSchemaVersion) {
+        throw InputError(file.string(), "user_version",
+                         "schema version " + std::to_string(version) + ", this build knows " +
+                             std::to_string(Store::kSchemaVersion));
+    }
+    const std::int64_t pan = single_integer(connection, "SELECT pan_id FROM site");
+    if (pan != pan_id) {
+        throw InputError(file.string(), "pan_id",
+                         "holds the maps of PAN " + std::to_string(pan) + ", the site's is " + std::to_string(pan_id));
+    }
+}
+
+/* Opened, checked and ready for statements. */
+Connection &prepare(Connection &connection, const std::filesystem::path &file, std::uint16_t pan_id)
+{
+    sqlite3_busy_timeout(connection.get(), kBusyTimeoutMs);
+    connection.execute("PRAGMA journal_mode = WAL");
+    connection.execute("PRAGMA synchronous = FULL");
+    if (single_integer(connection, "SELECT count(*) FROM sqlite_master") == 0) {
+        create_schema(connection, pan_id);
+    }
+    check_schema(connection, file, pan_id);
+    return connection;
+}
+
+} // namespace
+
+struct Store::Database {
+    Database(const std::filesystem::path &file, std::uint16_t pan_id, int flags, const char *vfs)
+        : connection(file, flags, vfs), ready(prepare(connection, file, pan_id)),
+          insert(ready, "INSERT INTO map (node, counter, capture_time_us, capture_id, kept, mse_px2, coded_map,"
+                        " coded_reference) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)"),
+          find(ready, (std::string(kMapColumns) + "WHERE node = ?1 AND counter = ?2").c_str()),
+          last_kept(ready,
+                    (std::string(kMapColumns) + "WHERE node = ?1 AND kept = 1 ORDER BY arrival DESC LIMIT 1").c_str()),
+          newest(ready, "SELECT counter FROM map WHERE node = ?1 ORDER BY arrival DESC LIMIT ?2"),
+          all(ready, (std::string(kMapColumns) + "ORDER BY node, counter").c_str()),
+          reserve(ready, "UPDATE reservation SET sealing_counter = sealing_counter + ?1 RETURNING sealing_counter")
+    {
+    }
+
+    Connection connection;
+    Connection &ready; /* the same, once the schema stands */
+    Statement insert;
+    Statement find;
+    Statement last_kept;
+    Statement newest;
+    Statement all;
+    Statement reserve;
+};
+
+Store::Store(const std::filesystem::path &file, std::uint16_t pan_id, Open open, const char *vfs)
+{
+    const int flags = SQLITE_OPEN_READWRITE | (open == Open::create ? SQLITE_OPEN_CREATE : 0);
+    try {
+        database_ = std::make_unique<Database>(file, pan_id, flags, vfs);
+    } catch (const StoreError &error) {
+        throw InputError(file.string(), "SQLite", error.what());
+    }
+}
+
+Store::~Store() = default;
+
+void Store::begin()
+{
+    database_->connection.execute("BEGIN IMMEDIATE");
+}
+
+void Store::commit()
+{
+    database_->connection.execute("COMMIT");
+}
+
+void Store::rollback()
+{
+    /* SQLite may have rolled back by itself after an I/O error; then this fails and all is well. */
+    sqlite3_exec(database_->connection.get(), "ROLLBACK", nullptr, nullptr, nullptr);
+}
+
+Insertion Store::insert(const StoredMap &map)
+{
+    if (const auto earlier = find(map.node, map.counter)) {
+        const bool same = earlier->capture_time_us == map.capture_time_us && earlier->capture_id == map.capture_id &&
+                          earlier->coded_map == map.coded_map && earlier->coded_reference == map.coded_reference;
+        return same ? Insertion::already_stored : Insertion::counter_reused;
+    }
+    Statement &statement = database_->insert;
+    statement.reset();
+    statement.bind(1, std::int64_t{map.node})
+        .bind(2, std::int64_t{map.counter})
+        .bind(3, std::bit_cast<std::int64_t>(map.capture_time_us))
+        .bind(4, std::int64_t{map.capture_id})
+        .bind(5, std::int64_t{map.kept})
+        .bind(7, map.coded_map)
+        .bind(8, map.coded_reference);
+    if (map.mse_px2) {
+        statement.bind(6, *map.mse_px2);
+    }
+    statement.step();
+    statement.reset();
+    return Insertion::stored;
+}
+
+std::optional<StoredMap> Store::find(std::uint16_t node, std::uint32_t counter) const
+{
+    Statement &statement = database_->find;
+    statement.reset();
+    std::optional<StoredMap> map;
+    if (statement.bind(1, std::int64_t{node}).bind(2, std::int64_t{counter}).step()) {
+        map = row_of(statement);
+    }
+    statement.reset();
+    return map;
+}
+
+std::optional<StoredMap> Store::last_kept(std::uint16_t node) const
+{
+    Statement &statement = database_->last_kept;
+    statement.reset();
+    std::optional<StoredMap> map;
+    if (statement.bind(1, std::int64_t{node}).step()) {
+        map = row_of(statement);
+    }
+    statement.reset();
+    return map;
+}
+
+std::vector<std::uint32_t> Store::newest_counters(std::uint16_t node, int count) const
+{
+    Statement &statement = database_->newest;
+    statement.reset();
+    statement.bind(1, std::int64_t{node}).bind(2, std::int64_t{count});
+    std::vector<std::uint32_t> counters;
+    while (statement.step()) {
+        counters.push_back(static_cast<std::uint32_t>(statement.integer(0)));
+    }
+    statement.reset();
+    return counters;
+}
+
+void Store::for_each(const std::function<void(const StoredMap &)> &visit) const
+{
+    Statement &statement = database_->all;
+    statement.reset();
+    while (statement.step()) {
+        visit(row_of(statement));
+    }
+    statement.reset();
+}
+
+std::uint32_t Store::take_sealing_counter()
+{
+    if (counters_left_ == 0) {
+        if (sqlite3_get_autocommit(database_->connection.get()) == 0) {
+            throw std::logic_error("Store::take_sealing_counter: inside a transaction");
+        }
+        Statement &statement = database_->reserve;
+        statement.reset();
+        const bool row = statement.bind(1, std::int64_t{kReservedAhead}).step();
+        const std::int64_t end = row ? statement.integer(0) : 0;
+        while (statement.step()) {
+            /* The statement commits when it has run to its end. */
+        }
+        statement.reset();
+        if (end <= kReservedAhead || end > std::numeric_limits<std::uint32_t>::max()) {
+            throw StoreError("the sealing counter is exhausted; the site needs new keys");
+        }
+        next_counter_ = static_cast<std::uint32_t>(end) - kReservedAhead;
+        counters_left_ = kReservedAhead;
+    }
+    counters_left_--;
+    return next_counter_++;
+}
+
+} // namespace tsr
