@@ -1,0 +1,232 @@
+/*
+ * tarsier-emulator: runs a site on recorded frames in virtual time.
+ *
+ *   tarsier-emulator site.toml --out out
+ *   tarsier-emulator --pair LEFT_DIR RIGHT_DIR --focal-px F --baseline-mm B --out out
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <unistd.h>
+
+#include "tsr/emulator/pair_site.h"
+#include "tsr/emulator/report.h"
+#include "tsr/emulator/simulation.h"
+#include "tsr/host/atomic_file.h"
+#include "tsr/host/input_error.h"
+#include "tsr/host/keys.h"
+#include "tsr/host/recorded_frames.h"
+
+namespace
+{
+
+namespace fs = std::filesystem;
+
+struct Options {
+    fs::path site;
+    std::vector<fs::path> pair;
+    tsr::PairOptions pair_options;
+    std::optional<std::uint64_t> seed;
+    fs::path out;
+    fs::path sink; /* tarsier-sink; beside this program by default */
+    bool quiet = false;
+};
+
+/* Throws CLI::ParseError. */
+void declare(CLI::App &app, Options &options)
+{
+    app.add_option("SITE", options.site, "site.toml");
+    auto *pair = app.add_option("--pair", options.pair, "folders of left and right frames, instead of SITE");
+    pair->expected(2);
+    app.add_option("--focal-px", options.pair_options.focal_px, "focal length of the rectified pair, px")->needs(pair);
+    app.add_option("--baseline-mm", options.pair_options.baseline_mm, "distance of the two cameras, mm")->needs(pair);
+    app.add_option("--d0", options.pair_options.d0_px, "disparity offset, px: Z = f B / (d + d0)")->needs(pair);
+    app.add_option("--disparities", options.pair_options.disparities, "disparities searched, 16..128")->needs(pair);
+    app.add_option("--seed", options.seed, "instead of the site's");
+    app.add_option("--out", options.out, "folder for the results")->required();
+    app.add_option("--sink", options.sink, "the tarsier-sink program, by default the one beside this");
+    app.add_flag("--quiet", options.quiet, "no progress bar");
+}
+
+/* One line on a terminal, rewritten ten times a second at most. */
+class ProgressBar
+{
+  public:
+    explicit ProgressBar(bool wanted) : shown_(wanted && isatty(STDERR_FILENO) != 0) {}
+
+    void operator()(std::uint64_t now_us, std::uint64_t end_us)
+    {
+        const auto now = std::chrono::steady_clock::now();
+        if (!shown_ || now - last_ < std::chrono::milliseconds(100)) {
+            return;
+        }
+        last_ = now;
+        draw(std::min(now_us, end_us), end_us, std::chrono::duration<double>(now - start_).count());
+    }
+
+    void finish() const
+    {
+        if (shown_) {
+            std::fputs("\r\x1b[K", stderr);
+        }
+    }
+
+  private:
+    static void draw(std::uint64_t now_us, std::uint64_t end_us, double wall_s)
+    {
+        constexpr std::size_t kWidth = 40;
+        const double share = end_us > 0 ? static_cast<double>(now_us) / static_cast<double>(end_us) : 1;
+        const auto filled = static_cast<std::size_t>(share * kWidth);
+        const std::string bar = std::string(filled, '#') + std::string(kWidth - filled, '.');
+        const double virtual_s = static_cast<double>(now_us) / 1e6;
+        std::fprintf(stderr, "\r[%s] %5.1f s of %.1f s, %.0f x real time, %.0f s left \x1b[K", bar.c_str(), virtual_s,
+                     static_cast<double>(end_us) / 1e6, wall_s > 0 ? virtual_s / wall_s : 0,
+                     share > 0 ? wall_s / share - wall_s : 0);
+        std::fflush(stderr);
+    }
+
+    bool shown_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    std::chrono::steady_clock::time_point last_{};
+};
+
+/* The folder for the results, free of an earlier run's database and maps: the
+ * test keys are the same again, so its counters would look like replays. */
+void prepare_out(const fs::path &out)
+{
+    std::error_code error;
+    fs::create_directories(out, error);
+    if (error) {
+        throw tsr::InputError(out.string(), "--out", error.message());
+    }
+    for (const char *name : {"sink.db", "sink.db-wal", "sink.db-shm", "sink.log", "sink.json", "summary.json"}) {
+        fs::remove(out / name, error);
+        if (error) {
+            throw tsr::InputError((out / name).string(), "remove", error.message());
+        }
+    }
+    for (const auto &entry : fs::directory_iterator(out / "maps", error)) {
+        if (entry.path().extension() == ".pfm" || entry.path().extension() == ".png") {
+            fs::remove(entry.path(), error);
+        }
+    }
+    tsr::write_file_atomically(out / "sink.log", std::string_view());
+}
+
+tsr::Site choose_site(const Options &options)
+{
+    if (options.site.empty() == options.pair.empty()) {
+        throw tsr::InputError("command line", "SITE or --pair", "give one of them");
+    }
+    if (!options.site.empty()) {
+        tsr::Site site = tsr::load_site(options.site);
+        site.seed = options.seed.value_or(site.seed);
+        return site;
+    }
+    tsr::PairOptions pair = options.pair_options;
+    pair.left = options.pair[0];
+    pair.right = options.pair[1];
+    pair.seed = options.seed.value_or(pair.seed);
+    for (const auto &[name, value] : {std::pair{"--focal-px", pair.focal_px}, {"--baseline-mm", pair.baseline_mm}}) {
+        if (!(value > 0)) {
+            throw tsr::InputError("command line", name, "must be given with --pair, above 0");
+        }
+    }
+    return tsr::make_pair_site(pair);
+}
+
+/* The same site with folders that are found from anywhere. */
+tsr::Site with_absolute_folders(tsr::Site site)
+{
+    const auto absolute = [&site](fs::path &folder) {
+        if (!folder.empty()) {
+            folder = fs::absolute(site.resolve(folder));
+        }
+    };
+    for (tsr::SiteNode &node : site.nodes) {
+        absolute(node.frames);
+        absolute(node.frames_right);
+    }
+    for (tsr::SitePair &pair : site.pairs) {
+        absolute(pair.truth);
+    }
+    return site;
+}
+
+void print_result(const fs::path &out, const nlohmann::ordered_json &summary)
+{
+    for (const auto &pair : summary.at("pairs")) {
+        std::printf("%s: %d frames watched, %d woken, %d maps made, %d withheld, %d sent, %d received, %d lost\n",
+                    pair.at("name").get<std::string>().c_str(), pair.at("frames_watched").get<int>(),
+                    pair.at("frames_woken").get<int>(), pair.at("maps_made").get<int>(),
+                    pair.at("maps_withheld").get<int>(), pair.at("maps_sent").get<int>(),
+                    pair.at("maps_received").get<int>(), pair.at("maps_lost").get<int>());
+        for (const auto &map : pair.at("maps")) {
+            if (map.contains("error")) {
+                std::printf("  map at %.1f s: median error %.3f px, %.1f mm; %.1f %% of the pixels correct\n",
+                            map.at("capture_time_s").get<double>(), map.at("error").at("median_px").get<double>(),
+                            map.at("error").at("median_mm").get<double>(),
+                            100 * map.at("error").at("correct").get<double>());
+            }
+        }
+    }
+    std::printf("%.1f s of virtual time in %.1f s; results in %s, look at %s\n",
+                summary.at("virtual_time_s").get<double>(), summary.at("wall_time_s").get<double>(), out.c_str(),
+                (out / "index.html").c_str());
+}
+
+int run(const Options &options)
+{
+    const auto start = std::chrono::steady_clock::now();
+    const tsr::Site site = with_absolute_folders(choose_site(options));
+    tsr::check_recordings(site);
+    prepare_out(options.out);
+    const fs::path site_file = options.out / "site.toml";
+    const tsr::KeyRing keys = tsr::derive_test_keys(site.seed, site);
+    tsr::write_site(site_file, site);
+    tsr::write_keys(options.out / "keys.toml", keys);
+
+    tsr::SinkProcess sink({options.sink, site_file, options.out / "keys.toml", options.out / "sink.db", options.out,
+                           options.out / "sink.log"});
+    tsr::Simulation simulation(site, keys, sink);
+    ProgressBar progress(!options.quiet);
+    simulation.run([&](std::uint64_t now_us, std::uint64_t end_us) { progress(now_us, end_us); });
+    progress.finish();
+    sink.finish();
+
+    simulation.capture().write(options.out / "capture.pcapng");
+    const auto maps = tsr::read_received_maps(site, simulation, options.out);
+    const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const auto summary = tsr::make_summary(site, simulation, maps, sink.restarts(), wall_s);
+    tsr::write_page(options.out, summary, simulation, maps);
+    tsr::write_file_atomically(options.out / "summary.json", summary.dump(2) + "\n");
+    print_result(options.out, summary);
+    return 0;
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    return tsr::run_program("tarsier-emulator", [&] {
+        CLI::App app("Runs a Tarsier site on recorded frames in virtual time.");
+        Options options;
+        declare(app, options);
+        options.sink = fs::read_symlink("/proc/self/exe").parent_path() / "tarsier-sink";
+        try {
+            app.parse(argc, argv);
+        } catch (const CLI::Success &help) {
+            return app.exit(help);
+        } catch (const CLI::ParseError &error) {
+            throw tsr::InputError("command line", "", error.what());
+        }
+        return run(options);
+    });
+}

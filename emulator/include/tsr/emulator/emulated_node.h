@@ -1,0 +1,103 @@
+/*
+ * One node of the emulator: the firmware's state machine with its cameras,
+ * radio and processor in virtual time.
+ *
+ * The processor does one step at a time and is busy for as long as the step's
+ * work takes; radio interrupts are served in between, as on a board.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_EMULATOR_EMULATED_NODE_H
+#define TSR_EMULATOR_EMULATED_NODE_H
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tsr/emulator/energy.h"
+#include "tsr/emulator/event_queue.h"
+#include "tsr/emulator/node_setup.h"
+#include "tsr/hal/air.h"
+#include "tsr/hal/recorded_camera.h"
+
+namespace tsr {
+
+/* A node entered a phase. */
+struct PhaseChange {
+    std::uint64_t time_us = 0;
+    std::uint16_t node = 0;
+    tsr_node_phase phase = TSR_PHASE_IDLE;
+};
+
+class EmulatedNode
+{
+  public:
+    struct Surroundings {
+        EventQueue &queue;
+        Air &air;
+        const PowerModel &power;
+        std::uint64_t seed;
+        tsr_port port;                                          /* of a gateway */
+        std::function<void(const PhaseChange &)> phase_changed; /* may be empty */
+    };
+
+    EmulatedNode(const Site &site, const SiteNode &node, const KeyRing &keys, Surroundings surroundings);
+    ~EmulatedNode();
+    EmulatedNode(const EmulatedNode &) = delete;
+    EmulatedNode &operator=(const EmulatedNode &) = delete;
+
+    /* Power on. Throws InputError if the firmware refuses to start. */
+    void start();
+    /* Bytes from the sink. */
+    void receive_from_port(const std::uint8_t *bytes, std::size_t len);
+
+    std::uint16_t id() const { return site_node_.id; }
+    const SiteNode &site_node() const { return site_node_; }
+    tsr_node_phase phase() const;
+    bool at_rest() const; /* idle or watching, nothing under way in MAC or sender */
+    const tsr_node_counters &counters() const;
+    const tsr_mac_counters &mac_counters() const;
+    const tsr_sender_counters &sender_counters() const;
+    std::size_t arena_len() const { return arena_.size() * sizeof(arena_[0]); }
+    /* Instructions done, by kind of work. */
+    const std::array<std::uint64_t, TSR_WORK_COUNT> &work_units() const { return work_units_; }
+    EnergyMj energy() const; /* from power-on until now */
+    /* Time of the last frame of its recording, 0 without cameras. */
+    std::uint64_t recording_end_us() const;
+
+    /* Name of the frame its left camera shows at a time; empty without one. */
+    std::string frame_name_at(std::uint64_t time_us) const;
+
+  private:
+    void add_camera(bool right, const std::filesystem::path &folder);
+    void schedule_step(std::uint64_t time_us);
+    void step();
+    void serve_mac();
+    void note_phase();
+    static void fill_entropy(void *self, std::uint8_t *bytes, std::size_t len);
+
+    const SiteNode &site_node_;
+    const Site &site_;
+    Surroundings around_;
+    std::unique_ptr<NodeSetup> setup_;
+    std::unique_ptr<tsr_node> node_;
+    std::vector<std::uint64_t> arena_;
+    std::size_t radio_ = 0;
+    std::vector<std::shared_ptr<RecordedFrames>> recordings_;
+    std::unique_ptr<RecordedCamera> left_;
+    std::unique_ptr<RecordedCamera> right_;
+    std::uint64_t random_ = 0;
+    std::uint64_t busy_until_us_ = 0;
+    std::uint64_t step_at_us_ = UINT64_MAX;  /* the step that is scheduled */
+    std::uint64_t timer_at_us_ = UINT64_MAX; /* the MAC timer that is scheduled */
+    std::uint64_t cpu_busy_us_ = 0;
+    std::array<std::uint64_t, TSR_WORK_COUNT> work_units_{};
+    tsr_node_phase phase_ = TSR_PHASE_IDLE;
+};
+
+} // namespace tsr
+
+#endif

@@ -1,0 +1,77 @@
+/*
+ * One run: every node of a site, the air between them, the sink behind the
+ * gateway, from power-on until the recordings are played and all is quiet.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_EMULATOR_SIMULATION_H
+#define TSR_EMULATOR_SIMULATION_H
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "tsr/emulator/emulated_node.h"
+#include "tsr/emulator/event_queue.h"
+#include "tsr/emulator/sink_process.h"
+#include "tsr/host/pcapng.h"
+
+namespace tsr
+{
+
+/* What one sender put on air. */
+struct AirTally {
+    std::uint64_t frames = 0; /* acknowledgements included */
+    std::uint64_t bytes = 0;  /* PSDU octets */
+    std::uint64_t lost = 0;   /* not received by the addressed node */
+};
+
+class Simulation
+{
+  public:
+    /* The sink's answer takes this long in virtual time, whatever it takes in
+     * truth. */
+    static constexpr std::uint64_t kSinkAnswerUs = 2000;
+    /* After the last frame: time to deliver what is under way. */
+    static constexpr std::uint64_t kPatienceUs = 120'000'000;
+
+    using Progress = std::function<void(std::uint64_t now_us, std::uint64_t end_us)>;
+
+    /* site, keys and sink are kept. Throws InputError for recordings or
+     * configurations that cannot be run. */
+    Simulation(const Site &site, const KeyRing &keys, SinkProcess &sink);
+    ~Simulation();
+    Simulation(const Simulation &) = delete;
+    Simulation &operator=(const Simulation &) = delete;
+
+    void run(const Progress &progress);
+
+    std::uint64_t duration_us() const { return queue_.now_us(); }
+    const std::vector<std::unique_ptr<EmulatedNode>> &nodes() const { return nodes_; }
+    const std::vector<PhaseChange> &timeline() const { return timeline_; }
+    const PcapngCapture &capture() const { return capture_; }
+    const AirTally &air_tally(std::size_t node_index) const { return air_tallies_.at(node_index); }
+    /* Whether everything was delivered before patience ended. */
+    bool quiet() const;
+
+  private:
+    static tsr_status write_port(void *self, const std::uint8_t *bytes, std::size_t len);
+    static const tsr_port_ops kPortOps;
+
+    const Site &site_;
+    SinkProcess &sink_;
+    PowerModel power_;
+    EventQueue queue_;
+    std::unique_ptr<Air> air_;
+    std::vector<std::unique_ptr<EmulatedNode>> nodes_;
+    EmulatedNode *gateway_ = nullptr;
+    std::vector<PhaseChange> timeline_;
+    std::vector<AirTally> air_tallies_;
+    PcapngCapture capture_;
+};
+
+} // namespace tsr
+
+#endif

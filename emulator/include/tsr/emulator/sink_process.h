@@ -1,0 +1,76 @@
+/*
+ * The sink of an emulation: a real tarsier-sink process on a Unix socket,
+ * spoken to in lockstep.
+ *
+ * Virtual time stands still while a request waits for its answer, so the run
+ * does not depend on how fast the sink is. If the process dies it is started
+ * again, and what it had not answered is asked again: the gateway link's own
+ * rule for a lost connection.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_EMULATOR_SINK_PROCESS_H
+#define TSR_EMULATOR_SINK_PROCESS_H
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+extern "C" {
+#include "tsr/wire/link.h"
+}
+
+namespace tsr
+{
+
+class SinkProcess
+{
+  public:
+    struct Options {
+        std::filesystem::path program; /* tarsier-sink */
+        std::filesystem::path site;
+        std::filesystem::path keys;
+        std::filesystem::path database;
+        std::filesystem::path out;
+        std::filesystem::path log; /* its stdout and stderr */
+    };
+
+    /* Starts the process. Throws InputError if it cannot be run. */
+    explicit SinkProcess(Options options);
+    ~SinkProcess();
+    SinkProcess(const SinkProcess &) = delete;
+    SinkProcess &operator=(const SinkProcess &) = delete;
+
+    /* Send one encoded link frame; returns the bytes of its ANSWER. Throws
+     * InputError if the sink refuses its input, std::runtime_error if it
+     * cannot be kept alive. */
+    std::vector<std::uint8_t> exchange(const std::uint8_t *frame, std::size_t len);
+
+    /* Let it export and end; checks its exit status. */
+    void finish();
+
+    unsigned restarts() const { return restarts_; }
+
+  private:
+    void start();
+    bool connect_socket();
+    bool send_all(const std::uint8_t *bytes, std::size_t len);
+    bool read_answer(std::uint16_t sequence, std::vector<std::uint8_t> &answer);
+    bool try_exchange(const std::uint8_t *frame, std::size_t len, std::vector<std::uint8_t> &answer);
+    void disconnect();
+    void reap(bool wait);
+
+    Options options_;
+    std::filesystem::path socket_path_;
+    std::vector<std::uint8_t> hello_; /* the gateway's HELLO, first on every connection */
+    int socket_ = -1;
+    pid_t pid_ = -1;
+    unsigned restarts_ = 0;
+};
+
+} // namespace tsr
+
+#endif

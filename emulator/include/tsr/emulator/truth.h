@@ -1,0 +1,45 @@
+/*
+ * Maps against ground truth.
+ *
+ * A pair's truth is a folder of PFM disparities named like its frames: the
+ * newest file whose name is not after a frame's name holds for that frame, so
+ * a still scene needs one file.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_EMULATOR_TRUTH_H
+#define TSR_EMULATOR_TRUTH_H
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "tsr/host/pfm.h"
+#include "tsr/host/site.h"
+
+namespace tsr
+{
+
+struct MapError {
+    std::size_t truth_pixels = 0;   /* with ground truth */
+    std::size_t matched_pixels = 0; /* of these, valid in the map */
+    double correct = 0;             /* within 1 px, over all pixels with truth */
+    double bad_half = 0;            /* more than 0.5 px wrong, over matched pixels */
+    double bad_1 = 0;               /* more than 1 px wrong, over matched pixels */
+    double median_px = 0;           /* median |disparity error|, over matched pixels */
+    double mean_px = 0;
+    double median_mm = 0;           /* median |depth error|, Z = f B / (d + d0) */
+    double median_depth_percent = 0; /* the same, of the true depth */
+};
+
+/* The truth file for a frame's file name, or nothing if none holds. */
+std::optional<std::filesystem::path> truth_file_for(const std::filesystem::path &folder, const std::string &frame_name);
+
+/* Throws InputError if the two differ in size. name stands for the truth in errors. */
+MapError compare_with_truth(const FloatImage &map, const FloatImage &truth, const SitePair &pair,
+                            const std::filesystem::path &name);
+
+} // namespace tsr
+
+#endif

@@ -1,0 +1,105 @@
+/*
+ * Node configuration from site and keys.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include "tsr/emulator/node_setup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "tsr/host/input_error.h"
+
+namespace tsr {
+
+namespace {
+
+constexpr double kDisparityOne = 16; /* UQ12.4 */
+
+tsr_role firmware_role(Role role)
+{
+    switch (role) {
+    case Role::gateway: return TSR_ROLE_GATEWAY;
+    case Role::relay: return TSR_ROLE_RELAY;
+    case Role::lead: return TSR_ROLE_LEAD;
+    case Role::wing: return TSR_ROLE_WING;
+    case Role::binocular: return TSR_ROLE_BINOCULAR;
+    }
+    return TSR_ROLE_RELAY;
+}
+
+/* For every node below this one, the child it is behind. */
+std::vector<tsr_route> routes_of(const Site &site, const SiteNode &node)
+{
+    std::vector<tsr_route> routes;
+    for (const SiteNode &other : site.nodes) {
+        const SiteNode *step = &other;
+        while (step->parent != kNodeNone && step->parent != node.id) {
+            step = site.node(step->parent);
+        }
+        if (step->parent == node.id) {
+            routes.push_back({other.id, step->id});
+        }
+    }
+    return routes;
+}
+
+void copy_key(const Key &key, std::uint8_t (&to)[TSR_AES_KEY_LEN])
+{
+    std::copy(key.begin(), key.end(), to);
+}
+
+void set_up_camera(tsr_node_config &config, const SiteNode &node, const SitePair &pair)
+{
+    const auto width = static_cast<std::uint16_t>(pair.width);
+    const auto height = static_cast<std::uint16_t>(pair.height);
+    config.watch_period_us = node.watch_period_ms * 1000;
+    config.change.width = width;
+    config.change.height = height;
+    config.match.width = width;
+    config.match.height = height;
+    config.match.disparities = static_cast<std::uint16_t>(pair.disparities);
+    config.match.search_start_px = static_cast<std::int16_t>(pair.search_start_px);
+    config.similarity.width = width;
+    config.similarity.height = height;
+    config.d0_q4 = static_cast<std::int16_t>(std::lround(pair.d0_px * kDisparityOne));
+    config.step_log2 = static_cast<std::uint8_t>(std::lround(std::log2(pair.step_px * kDisparityOne)));
+    config.reference_near =
+        pair.reference_image ? static_cast<std::uint8_t>(pair.reference_near) : std::uint8_t{TSR_REFERENCE_NONE};
+}
+
+} // namespace
+
+std::unique_ptr<NodeSetup> set_up_node(const Site &site, const SiteNode &node, const KeyRing &keys)
+{
+    auto setup = std::make_unique<NodeSetup>();
+    setup->routes = routes_of(site, node);
+    tsr_node_config &config = setup->config;
+    config.role = firmware_role(node.role);
+    config.pan_id = site.pan_id;
+    config.address = node.id;
+    config.partner = TSR_ADDRESS_NONE;
+    config.channel = static_cast<std::uint8_t>(site.channel);
+    config.routes.parent = node.parent == kNodeNone ? TSR_ADDRESS_NONE : node.parent;
+    config.routes.descendants = setup->routes.data();
+    config.routes.descendant_count = static_cast<std::uint16_t>(setup->routes.size());
+    copy_key(keys.link_key, config.link_key);
+    copy_key(keys.node_key(node.id).value(), config.node_key);
+    const SitePair *pair = site.pair_of(node.id);
+    if (pair != nullptr) {
+        if (pair->wing != kNodeNone) {
+            config.partner = node.id == pair->lead ? pair->wing : pair->lead;
+            copy_key(keys.pair_key(pair->lead, pair->wing).value(), config.pair_key);
+        }
+        set_up_camera(config, node, *pair);
+    }
+    const char *field = nullptr;
+    if (tsr_node_check(&config, &field) != TSR_OK) {
+        throw InputError(site.file.string(), pair != nullptr ? "pair '" + pair->name + "'" : "node " + std::to_string(node.id),
+                         std::string("the firmware refuses its ") + (field != nullptr ? field : "configuration"));
+    }
+    return setup;
+}
+
+} // namespace tsr

@@ -1,0 +1,65 @@
+/*
+ * The sink's maps, read back from what it exported, against ground truth.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include "tsr/emulator/report.h"
+#include "tsr/host/input_error.h"
+#include "tsr/host/read_file.h"
+
+namespace tsr
+{
+
+namespace
+{
+
+std::optional<MapError> error_of(const Site &site, const Simulation &simulation, const ReceivedMap &map,
+                                 const std::filesystem::path &out)
+{
+    const SitePair *pair = site.pair_of(map.node);
+    if (pair == nullptr || pair->truth.empty()) {
+        return std::nullopt;
+    }
+    std::string frame_name;
+    for (const auto &node : simulation.nodes()) {
+        if (node->id() == map.node) {
+            frame_name = node->frame_name_at(map.capture_time_us);
+        }
+    }
+    const auto truth_file = truth_file_for(site.resolve(pair->truth), frame_name);
+    if (!truth_file) {
+        return std::nullopt;
+    }
+    return compare_with_truth(read_pfm(out / (map.file + ".pfm")), read_pfm(*truth_file), *pair, *truth_file);
+}
+
+} // namespace
+
+std::vector<ReceivedMap> read_received_maps(const Site &site, const Simulation &simulation,
+                                            const std::filesystem::path &out)
+{
+    const auto file = out / "sink.json";
+    std::vector<ReceivedMap> maps;
+    try {
+        const auto json = nlohmann::json::parse(read_text_file(file));
+        for (const auto &entry : json.at("received")) {
+            ReceivedMap map;
+            map.node = entry.at("node").get<std::uint16_t>();
+            map.counter = entry.at("counter").get<std::uint32_t>();
+            map.capture_time_us = entry.at("capture_time_us").get<std::uint64_t>();
+            map.kept = entry.at("kept").get<bool>();
+            map.map_bytes = entry.at("map_bytes").get<std::size_t>();
+            map.reference_bytes = entry.at("reference_bytes").get<std::size_t>();
+            map.file = entry.at("file").get<std::string>();
+            maps.push_back(std::move(map));
+        }
+    } catch (const nlohmann::json::exception &error) {
+        throw InputError(file.string(), "json", error.what());
+    }
+    for (ReceivedMap &map : maps) {
+        map.error = error_of(site, simulation, map, out);
+    }
+    return maps;
+}
+
+} // namespace tsr

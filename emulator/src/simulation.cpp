@@ -1,0 +1,100 @@
+/*
+ * Building and running a site in virtual time.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include "tsr/emulator/simulation.h"
+
+#include <algorithm>
+
+namespace tsr
+{
+
+namespace
+{
+
+AirModel air_model(const Site &site)
+{
+    AirModel model;
+    model.tx_power_dbm = site.radio.tx_power_dbm;
+    model.reference_loss_db = site.radio.reference_loss_db;
+    model.path_loss_exponent = site.radio.path_loss_exponent;
+    model.sensitivity_dbm = site.radio.sensitivity_dbm;
+    model.frame_loss = site.radio.frame_loss;
+    model.seed = site.seed;
+    return model;
+}
+
+} // namespace
+
+const tsr_port_ops Simulation::kPortOps = {&Simulation::write_port};
+
+Simulation::Simulation(const Site &site, const KeyRing &keys, SinkProcess &sink) : site_(site), sink_(sink)
+{
+    Air::Clock clock;
+    clock.now_us = [this] { return queue_.now_us(); };
+    clock.at = [this](std::uint64_t time_us, std::function<void()> action) { queue_.at(time_us, std::move(action)); };
+    air_ = std::make_unique<Air>(air_model(site_), std::move(clock));
+    for (const SiteNode &node : site_.nodes) {
+        EmulatedNode::Surroundings around{queue_, *air_, power_, site_.seed, {}, {}};
+        if (node.role == Role::gateway) {
+            around.port = {&kPortOps, this};
+        }
+        around.phase_changed = [this](const PhaseChange &change) { timeline_.push_back(change); };
+        nodes_.push_back(std::make_unique<EmulatedNode>(site_, node, keys, around));
+        if (node.role == Role::gateway) {
+            gateway_ = nodes_.back().get();
+        }
+    }
+    air_tallies_.resize(nodes_.size());
+    air_->set_tap([this](const AirFrame &frame) {
+        AirTally &tally = air_tallies_.at(frame.sender);
+        ++tally.frames;
+        tally.bytes += frame.psdu_len;
+        tally.lost += frame.lost_at;
+        capture_.add(frame.start_us, frame.channel, {frame.psdu, frame.psdu_len});
+    });
+}
+
+Simulation::~Simulation() = default;
+
+/* Virtual time stands still while the real sink answers. */
+tsr_status Simulation::write_port(void *self, const std::uint8_t *bytes, std::size_t len)
+{
+    auto &simulation = *static_cast<Simulation *>(self);
+    auto answer = simulation.sink_.exchange(bytes, len);
+    simulation.queue_.at(simulation.queue_.now_us() + kSinkAnswerUs, [&simulation, answer = std::move(answer)] {
+        simulation.gateway_->receive_from_port(answer.data(), answer.size());
+    });
+    return TSR_OK;
+}
+
+bool Simulation::quiet() const
+{
+    return std::all_of(nodes_.begin(), nodes_.end(), [](const auto &node) { return node->at_rest(); });
+}
+
+void Simulation::run(const Progress &progress)
+{
+    std::uint64_t recorded_us = 0;
+    std::uint64_t longest_period_us = 0;
+    for (const auto &node : nodes_) {
+        recorded_us = std::max(recorded_us, node->recording_end_us());
+        longest_period_us = std::max<std::uint64_t>(longest_period_us, node->site_node().watch_period_ms * 1000u);
+        node->start();
+    }
+    /* Every watching node sees the last frame at least once. */
+    const std::uint64_t played_us = recorded_us + 2 * longest_period_us;
+    const std::uint64_t latest_us = played_us + kPatienceUs;
+    while (!queue_.empty() && queue_.next_us() <= latest_us) {
+        if (queue_.next_us() > played_us && quiet()) {
+            break;
+        }
+        queue_.run_next();
+        if (progress) {
+            progress(queue_.now_us(), played_us);
+        }
+    }
+}
+
+} // namespace tsr
