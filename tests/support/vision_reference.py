@@ -1,0 +1,177 @@
+"""The vision layer computed from docs/math.md with NumPy: whole volumes, exact fractions, nothing incremental.
+
+Invalid disparities are INVALID in maps given and returned. Slow and plain on purpose.
+
+SPDX-License-Identifier: Apache-2.0
+"""
+import functools
+import math
+from fractions import Fraction
+
+import numpy as np
+
+INVALID = 65535
+TEST_OFF = 255
+
+
+def inside(coordinates, low, high):
+    return np.clip(coordinates, low, high)
+
+
+def prefilter(picture, cap):
+    """Eq. (10)."""
+    height, width = picture.shape
+    y, x = np.mgrid[:height, :width]
+
+    def p(dx, dy):
+        return picture.astype(np.int64)[inside(y + dy, 0, height - 1), inside(x + dx, 0, width - 1)]
+
+    gradient = p(1, -1) + 2 * p(1, 0) + p(1, 1) - p(-1, -1) - 2 * p(-1, 0) - p(-1, 1)
+    return np.clip(np.floor_divide(gradient + 2, 4), -cap, cap) + cap
+
+
+def window_sums(values, radius, first, last):
+    """The sum over the window around every pixel, columns clipped to first .. last, rows to the picture."""
+    height, width = values.shape
+    rows = sum(values[inside(np.arange(height) + j, 0, height - 1)] for j in range(-radius, radius + 1))
+    return sum(rows[:, inside(np.arange(width) + i, first, last)] for i in range(-radius, radius + 1))
+
+
+def volume(left, right, disparities, window, start):
+    """Eqs. (11), (12): S[y, x, d], -1 where A does not exist."""
+    height, width = left.shape
+    sums = np.full((height, width, disparities), -1, np.int64)
+    for d in range(disparities):
+        first, last = max(0, d + start), min(width - 1, width - 1 + d + start)
+        if first > last:
+            continue
+        x = np.arange(first, last + 1)
+        a = np.zeros((height, width), np.int64)
+        a[:, x] = np.abs(left[:, x] - right[:, x - start - d])
+        sums[:, x, d] = window_sums(a, window // 2, first, last)[:, x]
+    return sums
+
+
+@functools.lru_cache(maxsize=None)
+def offset_q4(below, least, above):
+    """Eq. (16), to nearest, ties away from zero."""
+    offset = Fraction(16 * (below - above), 2 * (max(below, above) - least))
+    magnitude = math.floor(abs(offset) + Fraction(1, 2))
+    return magnitude if offset > 0 else -magnitude
+
+
+def match(left, right, disparities, window, cap, uniqueness, texture_min, tolerance, start):
+    """Chapter 3. The map as a uint16 array."""
+    height, width = left.shape
+    left, right = prefilter(left, cap), prefilter(right, cap)
+    sums = volume(left, right, disparities, window, start)
+    texture = window_sums(np.abs(left - cap), window // 2, 0, width - 1)
+    result = np.full((height, width), INVALID, np.uint16)
+    for y in range(height):
+        winners, claims = {}, {}
+        for x in range(width):
+            candidates = [d for d in range(disparities) if sums[y, x, d] >= 0]
+            if not candidates:
+                continue
+            costs = sums[y, x]
+            best = min(candidates, key=lambda d: (costs[d], d))
+            winners[x] = (best, candidates)
+            claims.setdefault(x - start - best, []).append((int(costs[best]), best))
+        for x, (best, candidates) in winners.items():
+            costs = sums[y, x].tolist()
+            least = costs[best]
+            if texture_min != TEST_OFF and texture[y, x] < texture_min * window:
+                continue
+            if uniqueness != TEST_OFF and any(100 * costs[d] <= (100 + uniqueness) * least
+                                              for d in candidates if abs(d - best) > 1):
+                continue
+            if tolerance != TEST_OFF and abs(min(claims[x - start - best])[1] - best) > tolerance:
+                continue
+            value = 16 * best
+            if best - 1 in candidates and best + 1 in candidates:
+                value += offset_q4(costs[best - 1], least, costs[best + 1])
+            result[y, x] = value
+    return result
+
+
+def median(disparity_map, valid_min, fill_min):
+    """Eq. (18)."""
+    height, width = disparity_map.shape
+    result = np.full_like(disparity_map, INVALID)
+    for y in range(height):
+        for x in range(width):
+            around = disparity_map[max(0, y - 1):y + 2, max(0, x - 1):x + 2].ravel()
+            values = sorted(int(v) for v in around if v != INVALID)
+            needed = fill_min if disparity_map[y, x] == INVALID else valid_min
+            if len(values) >= needed:
+                result[y, x] = values[(len(values) - 1) // 2]
+    return result
+
+
+def quantise(values, step_log2, disparities):
+    """Eq. (19)."""
+    step = 2 ** step_log2
+
+    def one(v):
+        return v if v == INVALID else min(step * ((v + step // 2) // step), 16 * (disparities - 1))
+
+    return np.array([one(int(v)) for v in values], np.uint16)
+
+
+def similarity(a, b, block_log2, clip_q4, threshold_q8):
+    """Eqs. (20) to (22): (mse_q8, pixels in both, pixels in one, blocks that count, different blocks)."""
+    a, b = a.astype(object), b.astype(object)
+    both = (a != INVALID) & (b != INVALID)
+    one = (a != INVALID) ^ (b != INVALID)
+    squares = np.where(both, (a - b) ** 2, 0)
+    count = int(both.sum())
+    mse = math.floor(Fraction(int(squares.sum()), count) + Fraction(1, 2)) if count else 0
+    side = 2 ** block_log2
+    blocks = different = 0
+    for y in range(0, a.shape[0] - side + 1, side):
+        for x in range(0, a.shape[1] - side + 1, side):
+            valid = both[y:y + side, x:x + side]
+            if 2 * int(valid.sum()) < side * side:
+                continue
+            blocks += 1
+            clipped = np.minimum(squares[y:y + side, x:x + side], clip_q4 ** 2)[valid]
+            different += Fraction(int(clipped.sum()), int(valid.sum())) > threshold_q8
+    return mse, count, int(one.sum()), blocks, different
+
+
+class Change:
+    """Chapter 2."""
+
+    def __init__(self, reduction, amplification, deviation_min, deviation_max, min_cells, settle_frames):
+        self.reduction, self.amplification = reduction, amplification
+        self.deviation_min, self.deviation_max = deviation_min, deviation_max
+        self.min_cells, self.settle_frames = min_cells, settle_frames
+        self.frames, self.mean, self.deviation = 0, None, None
+
+    def reduce(self, picture):
+        n = self.reduction
+        rows, columns = picture.shape[0] // n, picture.shape[1] // n
+        cells = picture[:rows * n, :columns * n].astype(np.int64).reshape(rows, n, columns, n).sum(axis=(1, 3))
+        return (cells + n * n // 2) // (n * n)
+
+    def rebase(self, picture):
+        self.mean = self.reduce(picture)
+        if self.frames == 0:
+            self.deviation = np.full_like(self.mean, self.deviation_min)
+        self.frames += 1
+
+    def update(self, picture):
+        """(changed, settling, changed cells)"""
+        cells = self.reduce(picture)
+        changed = 0
+        if self.frames == 0:
+            self.mean, self.deviation = cells, np.full_like(cells, self.deviation_min)
+        else:
+            self.mean = self.mean + np.sign(cells - self.mean)
+            distance = np.abs(cells - self.mean)
+            moved = self.deviation + np.sign(self.amplification * distance - self.deviation)
+            self.deviation = np.clip(moved, self.deviation_min, self.deviation_max)
+            changed = int((distance > self.deviation).sum())
+        settling = self.frames < self.settle_frames
+        self.frames += 1
+        return (not settling and changed >= self.min_cells), settling, 0 if settling else changed

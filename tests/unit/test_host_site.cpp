@@ -1,0 +1,240 @@
+/* site.toml: what is read, what is refused and with which words. SPDX-License-Identifier: Apache-2.0 */
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include "test_host_folder.h"
+#include "test_host_site.h"
+#include "tsr/host/site.h"
+
+namespace tsr
+{
+namespace
+{
+
+using test::Folder;
+using test::small_site;
+
+const std::string kGood = R"([site]
+name = "demo"
+pan_id = 0xbeef
+channel = 15
+seed = 7
+
+[radio]
+tx_power_dbm = 4
+frame_loss = 0.125
+
+[thresholds]
+similarity_px2 = 1
+
+[[node]]
+id = 1
+role = "gateway"
+
+[[node]]
+id = 2
+name = "attic"
+role = "relay"
+parent = 1
+position_m = [1, 2.5, 3]
+
+[[node]]
+id = 3
+role = "lead"
+parent = 2
+frames = "left160"
+watch_period_ms = 500
+
+[[node]]
+id = 4
+role = "wing"
+parent = 3
+
+[[pair]]
+name = "porch"
+lead = 3
+wing = 4
+width = 160
+height = 120
+disparities = 32
+search_start_px = 2
+focal_px = 150.5
+baseline_mm = 65
+principal_px = [80, 60]
+left = { position_m = [0, 0, 1] }
+right = { position_m = [0.065, 0, 1], principal_px = [81.5, 60] }
+)";
+
+/* kGood with the first occurrence of one text replaced. */
+std::string with(const std::string &from, const std::string &to)
+{
+    std::string text = kGood;
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+}
+
+std::string refusal_of(const std::string &text)
+{
+    const Folder folder;
+    const auto file = folder.put("site.toml", text);
+    std::string what = test::refusal([&] { load_site(file); });
+    EXPECT_EQ(what.find('\n'), std::string::npos);
+    const std::size_t name = what.find("site.toml");
+    return name == std::string::npos ? what : what.substr(name);
+}
+
+#define EXPECT_SITE_REFUSED(text, expected)                                                                            \
+    do {                                                                                                               \
+        const std::string what_ = refusal_of(text);                                                                    \
+        EXPECT_NE(what_.find(expected), std::string::npos) << what_;                                                   \
+    } while (false)
+
+TEST(HostSite, ReadsEveryField)
+{
+    const Folder folder;
+    const Site site = load_site(folder.put("site.toml", kGood));
+    EXPECT_EQ(site.name, "demo");
+    EXPECT_EQ(site.pan_id, 0xbeef);
+    EXPECT_EQ(site.seed, 7u);
+    EXPECT_EQ(site.radio.tx_power_dbm, 4.0);
+    EXPECT_EQ(site.radio.frame_loss, 0.125);
+    EXPECT_EQ(site.thresholds.similarity_px2, 1.0);
+    ASSERT_EQ(site.nodes.size(), 4u);
+    EXPECT_EQ(site.node(2)->name, "attic");
+    EXPECT_EQ(site.node(2)->position_m[1], 2.5);
+    EXPECT_EQ(site.node(3)->watch_period_ms, 500u);
+    EXPECT_EQ(site.node(9), nullptr);
+    EXPECT_EQ(site.gateway().id, 1);
+    ASSERT_EQ(site.pairs.size(), 1u);
+    EXPECT_EQ(site.pair_of(4), &site.pairs[0]);
+    EXPECT_EQ(site.pair_of(2), nullptr);
+    EXPECT_EQ(site.pairs[0].d0_px, 3.5); /* 2 + 81.5 - 80 */
+    EXPECT_EQ(site.resolve(site.node(3)->frames), folder / "left160");
+}
+
+TEST(HostSite, WritesWhatItReads)
+{
+    const Folder folder;
+    Site site = small_site();
+    site.name = "a \"quoted\" \\ name";
+    site.seed = 123456789012345;
+    site.pairs[0].left.rotation = {0, 0, 1, -1, 0, 0, 0, -1, 0};
+    site.pairs[0].truth = "truth";
+    site.nodes[2].frames = "left";
+    site.pairs[1].right = SitePose{{0.06, 0, 0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    site.radio.path_loss_exponent = 1.0 / 0.3;
+    write_site(folder / "site.toml", site);
+    const Site read = load_site(folder / "site.toml");
+    write_site(folder / "again.toml", read);
+    EXPECT_EQ(test::read_all(folder / "site.toml"), test::read_all(folder / "again.toml"));
+    EXPECT_EQ(read.name, site.name);
+    EXPECT_EQ(read.seed, site.seed);
+    EXPECT_EQ(read.radio.path_loss_exponent, site.radio.path_loss_exponent);
+    EXPECT_EQ(read.pairs[0].left.rotation, site.pairs[0].left.rotation);
+    EXPECT_EQ(read.pairs[0].d0_px, 1.5);
+    EXPECT_TRUE(read.pairs[1].right.has_value());
+}
+
+TEST(HostSite, RefusesSyntaxAndTypesWithTheLine)
+{
+    EXPECT_SITE_REFUSED("[site\n", "site.toml:");
+    EXPECT_SITE_REFUSED("", "site: is missing");
+    EXPECT_SITE_REFUSED(with("channel = 15", "channel = \"15\""), "site.toml:4: site.channel: is not a whole number");
+    EXPECT_SITE_REFUSED(with("channel = 15", "channel = 27"), "site.toml:4: site.channel: 27 is outside 11..26");
+    EXPECT_SITE_REFUSED(with("channel = 15", "chanel = 15"), "site.toml:4: site.chanel: unknown field");
+    EXPECT_SITE_REFUSED(with("[radio]", "[radios]"), "radios: unknown field");
+    EXPECT_SITE_REFUSED(with("frame_loss = 0.125", "frame_loss = 1.5"), "frame_loss: 1.5 is outside 0..1");
+    EXPECT_SITE_REFUSED(with("frame_loss = 0.125", "frame_loss = nan"), "frame_loss");
+    EXPECT_SITE_REFUSED(with("position_m = [1, 2.5, 3]", "position_m = [1, 2.5]"),
+                        "node 2: position_m: is not a list of 3");
+    EXPECT_SITE_REFUSED(with("position_m = [1, 2.5, 3]", "position_m = [1, 2.5, inf]"),
+                        "node 2: position_m: element 3");
+    EXPECT_SITE_REFUSED(with("focal_px = 150.5\n", ""), "pair 'porch': focal_px: is missing");
+    EXPECT_SITE_REFUSED(with("similarity_px2 = 1", "similarity_px2 = 100"), "similarity_px2");
+    EXPECT_SITE_REFUSED(std::string(5000, '['), "site.toml:");
+    EXPECT_SITE_REFUSED("node = 3\n" + kGood, "site.toml:");
+}
+
+TEST(HostSite, RefusesTreesThatCannotWork)
+{
+    EXPECT_SITE_REFUSED(with("id = 4\n", "id = 3\n"), "node 3: id: is used twice");
+    EXPECT_SITE_REFUSED(with("id = 4\n", "id = 0\n"), "id: 0 is outside 1..65533");
+    EXPECT_SITE_REFUSED(with("id = 4\n", "id = 0xfffe\n"), "id: 65534 is outside");
+    EXPECT_SITE_REFUSED(with("role = \"relay\"", "role = \"rely\""), "site.toml:21: node 2: role: 'rely' is not");
+    EXPECT_SITE_REFUSED(with("role = \"relay\"", "role = \"gateway\""), "there is exactly one");
+    EXPECT_SITE_REFUSED(with("role = \"gateway\"", "role = \"relay\""), "no node has role = \"gateway\"");
+    EXPECT_SITE_REFUSED(with("parent = 1", "parent = 9"), "node 2: parent: there is no node 9");
+    EXPECT_SITE_REFUSED(with("parent = 1\n", ""), "node 2: parent: is missing");
+    EXPECT_SITE_REFUSED(with("parent = 1", "parent = 2"), "runs in a circle");
+    EXPECT_SITE_REFUSED(with("parent = 1", "parent = 3"), "runs in a circle");
+    EXPECT_SITE_REFUSED(with("parent = 1", "parent = 4"), "forwards nothing");
+    EXPECT_SITE_REFUSED(with("parent = 3", "parent = 2"), "a wing's parent is its lead, 3");
+    EXPECT_SITE_REFUSED(with("role = \"gateway\"", "role = \"gateway\"\nparent = 2"), "root of the tree");
+}
+
+TEST(HostSite, RefusesPairsThatDoNotExist)
+{
+    EXPECT_SITE_REFUSED(with("lead = 3", "lead = 9"), "pair 'porch': lead: there is no node 9");
+    EXPECT_SITE_REFUSED(with("wing = 4", "wing = 9"), "pair 'porch': wing: there is no node 9");
+    EXPECT_SITE_REFUSED(with("lead = 3", "lead = 2"), "lead: node 2 is a relay");
+    EXPECT_SITE_REFUSED(with("wing = 4", "wing = 2"), "wing: node 2 is a relay");
+    EXPECT_SITE_REFUSED(with("wing = 4\n", ""), "wing: is missing");
+    EXPECT_SITE_REFUSED(kGood.substr(0, kGood.find("[[pair]]")), "a lead that no [[pair]] names");
+    EXPECT_SITE_REFUSED(with("frames = \"left160\"", "frames_right = \"x\""), "only a binocular node");
+    EXPECT_SITE_REFUSED(with("disparities = 32", "disparities = 33"), "disparities");
+    EXPECT_SITE_REFUSED(with("search_start_px = 2", "search_start_px = 200"), "search_start_px: is outside -128..128");
+    EXPECT_SITE_REFUSED(with("focal_px = 150.5", "focal_px = 150.5\nd0_px = 2"), "d0_px: is not search_start_px plus");
+    EXPECT_SITE_REFUSED(with("focal_px = 150.5", "focal_px = 150.5\nstep_px = 0.3"), "step_px");
+    EXPECT_SITE_REFUSED(with(", principal_px = [81.5, 60] }", "}\nd0_px = -40"), "no searched disparity");
+}
+
+TEST(HostSite, RefusesCamerasThatAreNotRectified)
+{
+    const std::string right = "position_m = [0.065, 0, 1], ";
+    EXPECT_SITE_REFUSED(with(right, "position_m = [0.07, 0, 1], "), "right.position_m: is 70.0 mm from the left");
+    EXPECT_SITE_REFUSED(with(right, "position_m = [0, 0, 1.065], "), "the epipole lies in the image");
+    EXPECT_SITE_REFUSED(with(right, "position_m = [-0.065, 0, 1], "), "180.0 degrees off");
+    EXPECT_SITE_REFUSED(with(right, "position_m = [0.0649, 0.0034, 1], "), "baseline is 3.0 degrees off");
+    /* Turned by 12.3 degrees about y. */
+    EXPECT_SITE_REFUSED(with(right, right + "rotation = [0.97705, 0, 0.21303, 0, 1, 0, -0.21303, 0, 0.97705], "),
+                        "turned by 12.3 degrees against each other: not rectified");
+    EXPECT_SITE_REFUSED(with(right, right + "rotation = [1, 0, 0, 0, 1, 0, 0, 0, -1], "), "mirror image");
+    EXPECT_SITE_REFUSED(with(right, right + "rotation = [1, 0.1, 0, 0, 1, 0, 0, 0, 1], "), "not orthonormal");
+    /* 0.4 degrees pass. */
+    EXPECT_EQ(refusal_of(with(right, right + "rotation = [0.999976, 0, 0.006981, 0, 1, 0, -0.006981, 0, 0.999976], ")),
+              "");
+}
+
+TEST(HostSite, ChecksSitesBuiltInMemory)
+{
+    Site site = small_site();
+    EXPECT_EQ(test::refusal([&] { check_site(site); }), "");
+    site.nodes[3].parent = 2;
+    EXPECT_EQ(test::refusal([&] { check_site(site); }),
+              "site: node 4: parent: is 2, but a wing's parent is its lead, 3");
+    site = small_site();
+    site.pairs[0].name = "yard";
+    EXPECT_REFUSED(check_site(site), "pair 'yard': name: is used twice");
+    site = small_site();
+    site.pairs[0].focal_px = 0;
+    EXPECT_REFUSED(check_site(site), "focal_px");
+    site = small_site();
+    site.name = "two\nlines";
+    EXPECT_REFUSED(check_site(site), "control character");
+}
+
+TEST(HostSite, AnyBytesAreRefusedOrRead)
+{
+    const Folder folder;
+    for (std::size_t i = 0; i < kGood.size(); i += 3) {
+        std::string text = kGood;
+        text[i] = static_cast<char>(text[i] ^ 0x15);
+        const auto file = folder.put("site.toml", text);
+        test::refusal([&] { load_site(file); }); /* any other exception fails the test */
+    }
+}
+
+} // namespace
+} // namespace tsr

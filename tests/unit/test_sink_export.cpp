@@ -1,0 +1,121 @@
+/* Exported files: complete, right and equal for equal stores. SPDX-License-Identifier: Apache-2.0 */
+#include <map>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "test_host_folder.h"
+#include "test_host_site.h"
+#include "test_sink_messages.h"
+#include "tsr/host/pfm.h"
+#include "tsr/sink/export.h"
+
+namespace tsr
+{
+namespace
+{
+
+using test::Folder;
+
+StoredMap stored_of(const SitePair &pair, std::uint32_t counter, std::uint16_t disparity_q4, bool kept)
+{
+    StoredMap stored;
+    stored.node = pair.lead;
+    stored.counter = counter;
+    stored.kept = kept;
+    stored.coded_map = test::code_map(test::flat_map(pair, disparity_q4));
+    stored.coded_reference = test::code_reference(test::textured_image(pair));
+    return stored;
+}
+
+std::map<std::string, std::string> files_in(const std::filesystem::path &folder)
+{
+    std::map<std::string, std::string> files;
+    for (const auto &entry : std::filesystem::recursive_directory_iterator(folder)) {
+        if (entry.is_regular_file()) {
+            files[std::filesystem::relative(entry.path(), folder).string()] = test::read_all(entry.path());
+        }
+    }
+    return files;
+}
+
+class SinkExport : public ::testing::Test
+{
+  protected:
+    SinkExport()
+    {
+        store.insert(stored_of(site.pairs[0], 9, 64, true));
+        store.insert(stored_of(site.pairs[0], 10, 64, false));
+        StoredMap yard = stored_of(site.pairs[1], 4000000000u, 128, true);
+        yard.coded_reference.clear();
+        store.insert(yard);
+    }
+
+    const Folder folder;
+    const Site site = test::small_site();
+    Store store{folder / "a.db", site.pan_id};
+};
+
+TEST_F(SinkExport, WritesTheStatedFiles)
+{
+    const ExportResult result = export_site(site, store, {}, folder / "out");
+    EXPECT_EQ(result.maps, 3u);
+    EXPECT_EQ(result.points, 32u * 24u + 48u * 32u);
+    const auto files = files_in(folder / "out");
+    std::vector<std::string> names;
+    for (const auto &[name, bytes] : files) {
+        names.push_back(name);
+    }
+    EXPECT_EQ(names,
+              (std::vector<std::string>{"cloud.ply", "maps/00003-0000000009-reference.png", "maps/00003-0000000009.pfm",
+                                        "maps/00003-0000000009.png", "maps/00003-0000000010-reference.png",
+                                        "maps/00003-0000000010.pfm", "maps/00003-0000000010.png",
+                                        "maps/00005-4000000000.pfm", "maps/00005-4000000000.png", "sink.json"}));
+    EXPECT_NE(files.at("cloud.ply").find("element vertex 2304\n"), std::string::npos);
+    EXPECT_EQ(read_pfm(folder / "out/maps/00003-0000000009.pfm").pixels[7], 4.0F);
+    EXPECT_EQ(read_gray_image(folder / "out/maps/00003-0000000009-reference.png").pixels,
+              test::textured_image(site.pairs[0]).pixels);
+}
+
+TEST_F(SinkExport, NumbersAddUp)
+{
+    SessionNumbers session;
+    session.tally.add(Cause::not_authentic, 3);
+    session.link.uplinks = 12;
+    export_site(site, store, session, folder / "out");
+    const auto json = nlohmann::json::parse(test::read_all(folder / "out/sink.json"));
+    EXPECT_EQ(json["maps"]["received"], 3);
+    EXPECT_EQ(json["maps"]["kept"], 2);
+    EXPECT_EQ(json["maps"]["dropped"], 1);
+    EXPECT_EQ(json["nodes"].size(), site.nodes.size());
+    EXPECT_EQ(json["nodes"][2]["id"], 3);
+    EXPECT_EQ(json["nodes"][2]["maps_dropped"], 1);
+    EXPECT_EQ(json["nodes"][4]["maps_kept"], 1);
+    EXPECT_EQ(json["session"]["refused"]["not_authentic"], 3);
+    EXPECT_EQ(json["session"]["refused"]["store_failed"], 0);
+    EXPECT_EQ(json["session"]["link"]["uplinks"], 12);
+}
+
+TEST_F(SinkExport, EqualStoresGiveEqualBytes)
+{
+    export_site(site, store, {}, folder / "first");
+    export_site(site, store, {}, folder / "second");
+    export_site(site, store, {}, folder / "second"); /* over existing files */
+    EXPECT_EQ(files_in(folder / "first"), files_in(folder / "second"));
+}
+
+TEST_F(SinkExport, AnEmptyStoreGivesAnEmptyCloud)
+{
+    const Store empty(folder / "empty.db", site.pan_id);
+    EXPECT_EQ(export_site(site, empty, {}, folder / "out").points, 0u);
+    EXPECT_NE(test::read_all(folder / "out/cloud.ply").find("element vertex 0\n"), std::string::npos);
+}
+
+TEST_F(SinkExport, NamesAFolderItCannotWrite)
+{
+    folder.put("file", "x");
+    EXPECT_REFUSED(export_site(site, store, {}, folder / "file/out"), "file/out");
+}
+
+} // namespace
+} // namespace tsr

@@ -1,0 +1,177 @@
+"""The C codec against the decoders of tests/support/codec_decoder.py, written from docs/codec.md.
+
+The C encodes pictures of every kind; the Python must decode the same picture, and both must say the same about damaged
+and random bytes, row for row. SEED replays a run: SEED=n python3 tests/vectors/test_codec_decoder.py
+
+SPDX-License-Identifier: Apache-2.0
+"""
+import ctypes
+import os
+import pathlib
+import sys
+
+try:
+    import numpy as np
+except ImportError:
+    print("skipped: numpy is not installed")
+    sys.exit(77)
+
+SOURCE = pathlib.Path(os.environ.get("TSR_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(SOURCE / "tests" / "support"))
+import codec_decoder as reference  # noqa: E402
+
+OK, AGAIN, ERR_FORMAT, ERR_VERSION = 0, 1, -4, -5
+STATE_LEN = 16384  # more than any coder's state
+
+
+def load_library():
+    build = pathlib.Path(os.environ.get("TSR_BUILD", "build"))
+    found = sorted(build.rglob("libtsr_firmware.so"))
+    if not found:
+        sys.exit(f"no libtsr_firmware.so under {build}")
+    return ctypes.CDLL(str(found[0]))
+
+
+class MapInfo(ctypes.Structure):
+    _fields_ = [("width", ctypes.c_uint16), ("height", ctypes.c_uint16), ("disparities", ctypes.c_uint16),
+                ("step_log2", ctypes.c_uint8), ("d0_q4", ctypes.c_int16)]
+
+
+class GrayInfo(ctypes.Structure):
+    _fields_ = [("width", ctypes.c_uint16), ("height", ctypes.c_uint16), ("near", ctypes.c_uint8)]
+
+
+LIB = load_library()
+for kind in ("map", "gray"):
+    getattr(LIB, f"tsr_{kind}_encoded_len_max").restype = ctypes.c_size_t
+
+
+def pointer(array):
+    return array.ctypes.data_as(ctypes.c_void_p)
+
+
+def encode(kind, info, pixels):
+    state = np.zeros(STATE_LEN, np.uint8)
+    out = np.zeros(getattr(LIB, f"tsr_{kind}_encoded_len_max")(ctypes.byref(info)), np.uint8)
+    scratch = np.zeros(3 * (info.width + 4), pixels.dtype)
+    length = ctypes.c_size_t(0)
+    size = ctypes.c_size_t
+    status = getattr(LIB, f"tsr_{kind}_encode_start")(pointer(state), ctypes.byref(info), pointer(out), size(out.size),
+                                                      pointer(scratch), size(scratch.size))
+    assert status == OK, status
+    status = getattr(LIB, f"tsr_{kind}_encode_rows")(pointer(state), pointer(pixels), size(info.width), info.height)
+    assert status == OK, status
+    status = getattr(LIB, f"tsr_{kind}_encode_finish")(pointer(state), ctypes.byref(length))
+    assert status == OK, status
+    return out[:length.value].tobytes()
+
+
+def decode(kind, data, dtype, info):
+    """(status, rows decoded before a status that is an error)"""
+    state = np.zeros(STATE_LEN, np.uint8)
+    data = np.frombuffer(data, np.uint8) if data else np.zeros(1, np.uint8)[:0]
+    scratch = np.zeros(3 * 644, dtype)
+    size = ctypes.c_size_t
+    status = getattr(LIB, f"tsr_{kind}_decode_start")(pointer(state), pointer(data), size(data.size), pointer(scratch),
+                                                      size(scratch.size), ctypes.byref(info))
+    rows = []
+    if status != OK:
+        return status, rows
+    for _ in range(info.height):
+        row = np.zeros(info.width, dtype)
+        status = getattr(LIB, f"tsr_{kind}_decode_rows")(pointer(state), pointer(row), size(info.width), 1)
+        if status < 0:
+            break
+        rows.append(row.tolist())
+    return status, rows
+
+
+def make_map(rng, kind, width, height, disparities, step_log2):
+    steps = (16 * disparities) >> step_log2
+    y, x = np.mgrid[0:height, 0:width]
+    if kind == "noise":
+        d = rng.integers(0, steps, (height, width))
+    elif kind == "slope":
+        d = (x * rng.integers(1, 5) + y + rng.integers(0, 2, (height, width))) // 3 % steps
+    elif kind == "blocks":
+        d = rng.integers(0, steps, (height // 8 + 1, width // 8 + 1))[y // 8, x // 8]
+        d = np.clip(d + rng.integers(-1, 2, (height, width)) * (rng.random((height, width)) < 0.2), 0, steps - 1)
+    else:
+        d = np.zeros((height, width), np.int64)
+    result = (d << step_log2).astype(np.uint16)
+    share = {"empty": 1.0, "noise": 0.1, "blocks": 0.2}.get(kind, 0.02)
+    coarse = rng.random((height // 4 + 1, width // 4 + 1))[y // 4, x // 4]
+    result[coarse < share] = reference.INVALID
+    return result
+
+
+def make_gray(rng, kind, width, height):
+    y, x = np.mgrid[0:height, 0:width]
+    if kind == "noise":
+        return rng.integers(0, 256, (height, width)).astype(np.uint8)
+    if kind == "steps":
+        return np.where((x // 5 + y // 3) % 2 == 0, 0, 255).astype(np.uint8)
+    if kind == "flat":
+        return np.full((height, width), rng.integers(0, 256), np.uint8)
+    wave = 128 + 90 * np.sin(x / 9 + rng.random()) * np.cos(y / 7) + rng.normal(0, 4, (height, width))
+    return np.clip(wave, 0, 255).astype(np.uint8)
+
+
+def check_damaged(rng, kind, data, dtype, make_info, decode_reference, header_len):
+    damaged = bytearray(data)
+    for _ in range(int(rng.integers(1, 4))):
+        damaged[int(rng.integers(header_len, len(damaged))) if len(damaged) > header_len else 0] ^= int(
+            rng.integers(1, 256))
+    damaged = bytes(damaged[:int(rng.integers(0, len(damaged) + 1))]) if rng.random() < 0.3 else bytes(damaged)
+    status, rows = decode(kind, damaged, dtype, make_info())
+    try:
+        _, expected = decode_reference(damaged)
+        expected_status = OK
+    except reference.FormatError as error:
+        expected, expected_status = list(error.rows), ERR_FORMAT
+    except reference.VersionError:
+        expected, expected_status = [], ERR_VERSION
+    assert status == expected_status, (kind, status, expected_status)
+    assert rows == expected, kind
+    return status != OK
+
+
+def main():
+    seed = int(os.environ.get("SEED", "1"))
+    print(f"replay: SEED={seed} python3 tests/vectors/test_codec_decoder.py")
+    rng = np.random.default_rng(seed)
+    counts = {"map": 0, "gray": 0, "damaged": 0, "refused": 0}
+    sizes = [(1, 1), (1, 9), (2, 3), (3, 2), (5, 7), (17, 11), (64, 24)]
+    for step_log2 in range(5):
+        for kind in ("noise", "slope", "blocks", "zero", "empty"):
+            for width, height in sizes + ([(160, 120)] if step_log2 in (0, 2) else []):
+                disparities = int(rng.choice([1, 2, 16, 31, 48, 64, 128]))
+                info = MapInfo(width, height, disparities, step_log2, int(rng.integers(-32768, 32768)))
+                pixels = make_map(rng, kind, width, height, disparities, step_log2)
+                data = encode("map", info, pixels)
+                header, rows = reference.decode_map(data)
+                assert rows == pixels.tolist(), (kind, width, height, disparities, step_log2)
+                assert (header.disparities, header.step_log2, header.d0_q4) == (disparities, step_log2, info.d0_q4)
+                counts["map"] += 1
+                counts["refused"] += check_damaged(rng, "map", data, np.uint16, MapInfo, reference.decode_map, 9)
+                counts["damaged"] += 1
+    for near in range(8):
+        for kind in ("noise", "steps", "flat", "wave"):
+            for width, height in sizes + ([(160, 120)] if near in (0, 2) else []):
+                info = GrayInfo(width, height, near)
+                pixels = make_gray(rng, kind, width, height)
+                data = encode("gray", info, pixels)
+                header, rows = reference.decode_gray(data)
+                error = np.abs(np.array(rows, int) - pixels).max()
+                assert error <= near and header.near == near, (kind, width, height, near, error)
+                status, decoded = decode("gray", data, np.uint8, GrayInfo())
+                assert status == OK and decoded == rows
+                counts["gray"] += 1
+                counts["refused"] += check_damaged(rng, "gray", data, np.uint8, GrayInfo, reference.decode_gray, 6)
+                counts["damaged"] += 1
+    print(", ".join(f"{value} {name}" for name, value in counts.items()))
+
+
+if __name__ == "__main__":
+    main()
