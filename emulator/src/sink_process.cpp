@@ -33,7 +33,7 @@ namespace
 
 constexpr int kConnectTries = 500; /* of 10 ms: a loaded machine may be slow to start it */
 constexpr int kAnswerTimeoutMs = 30'000;
-constexpr unsigned kRestartsMax = 10'000;
+constexpr unsigned kRestartsMax = 1000;
 
 /* Type and sequence of an encoded frame; type 0 if it is none. */
 tsr_link_frame decode_frame(const std::uint8_t *bytes, std::size_t len)
@@ -209,38 +209,46 @@ std::vector<std::uint8_t> SinkProcess::exchange(const std::uint8_t *frame, std::
     }
     std::vector<std::uint8_t> answer;
     while (!try_exchange(frame, len, answer)) {
-        disconnect();
-        if (pid_ > 0) {
-            kill(pid_, SIGKILL); /* alive but silent is as good as dead */
-            reap(true);
-        }
-        if (++restarts_ > kRestartsMax) {
-            throw std::runtime_error("tarsier-sink does not stay alive; see " + options_.log.string());
-        }
-        start();
+        restart();
     }
     return answer;
 }
 
-void SinkProcess::finish()
+void SinkProcess::restart()
 {
     disconnect();
-    reap(false);
-    if (pid_ <= 0) { /* killed after its last answer: start it once more to export */
-        ++restarts_;
-        start();
-        if (!connect_socket()) {
-            throw std::runtime_error("tarsier-sink does not start; see " + options_.log.string());
-        }
-        disconnect();
+    if (pid_ > 0) {
+        kill(pid_, SIGKILL); /* alive but silent is as good as dead */
+        reap(true);
     }
+    if (++restarts_ > kRestartsMax) {
+        throw std::runtime_error("tarsier-sink does not stay alive; see " + options_.log.string());
+    }
+    start();
+}
+
+bool SinkProcess::try_finish()
+{
+    /* Connected means that it takes signals as requests from now on. */
+    if (socket_ < 0 && !connect_socket()) {
+        return false;
+    }
+    disconnect();
     int status = 0;
     kill(pid_, SIGTERM);
     while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
     }
     pid_ = -1;
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-        throw std::runtime_error("tarsier-sink did not export its maps; see " + options_.log.string());
+    if (WIFEXITED(status) && WEXITSTATUS(status) == kExitInput) {
+        throw InputError(options_.log.string(), "tarsier-sink", "could not export; its last line says why");
+    }
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+void SinkProcess::finish()
+{
+    while (!try_finish()) {
+        restart();
     }
 }
 

@@ -39,7 +39,7 @@ Eigen::Matrix3d checked_rotation(const Site &site, const SitePair &pair, const S
             refuse_pair(site, pair, side + ".position_m", "is not finite");
         }
     }
-    const Eigen::Matrix3d rotation = Eigen::Map<const RowMajor3>(pose.rotation.data());
+    Eigen::Matrix3d rotation = Eigen::Map<const RowMajor3>(pose.rotation.data());
     const double error = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
     if (!(error <= kRotationErrorMax)) {
         refuse_pair(site, pair, side + ".rotation", "its columns are not orthonormal");

@@ -56,6 +56,8 @@ class SinkProcess
 
   private:
     void start();
+    void restart();
+    bool try_finish();
     bool connect_socket();
     bool send_all(const std::uint8_t *bytes, std::size_t len);
     bool read_answer(std::uint16_t sequence, std::vector<std::uint8_t> &answer);
