@@ -14,9 +14,11 @@ extern "C" {
 #include "tsr/host/aes.h"
 #include "tsr/host/input_error.h"
 
-namespace tsr {
+namespace tsr
+{
 
-namespace {
+namespace
+{
 
 constexpr std::uint32_t kFramePeriodMsDefault = 500; /* of a folder without times.csv */
 
@@ -82,7 +84,8 @@ void EmulatedNode::start()
     const tsr_status status = tsr_node_init(node_.get(), &setup_->config, &hal,
                                             reinterpret_cast<std::uint8_t *>(arena_.data()), arena_len(), now_us);
     if (status != TSR_OK) {
-        throw InputError(site_.file.string(), site_node_.name, std::string("does not start: ") + tsr_status_name(status));
+        throw InputError(site_.file.string(), site_node_.name,
+                         std::string("does not start: ") + tsr_status_name(status));
     }
     serve_mac();
     schedule_step(now_us);

@@ -8,7 +8,8 @@
 #include <algorithm>
 #include <array>
 
-namespace tsr {
+namespace tsr
+{
 
 double instructions_per_unit(tsr_work_kind kind)
 {

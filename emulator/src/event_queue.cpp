@@ -8,7 +8,8 @@
 #include <algorithm>
 #include <utility>
 
-namespace tsr {
+namespace tsr
+{
 
 void EventQueue::at(std::uint64_t time_us, Action action)
 {

@@ -11,9 +11,11 @@
 
 #include "tsr/host/input_error.h"
 
-namespace tsr {
+namespace tsr
+{
 
-namespace {
+namespace
+{
 
 constexpr double kDisparityOne = 16; /* UQ12.4 */
 
@@ -96,7 +98,8 @@ std::unique_ptr<NodeSetup> set_up_node(const Site &site, const SiteNode &node, c
     }
     const char *field = nullptr;
     if (tsr_node_check(&config, &field) != TSR_OK) {
-        throw InputError(site.file.string(), pair != nullptr ? "pair '" + pair->name + "'" : "node " + std::to_string(node.id),
+        throw InputError(site.file.string(),
+                         pair != nullptr ? "pair '" + pair->name + "'" : "node " + std::to_string(node.id),
                          std::string("the firmware refuses its ") + (field != nullptr ? field : "configuration"));
     }
     return setup;

@@ -77,11 +77,16 @@ void SinkProcess::start()
 {
     std::error_code ignored;
     std::filesystem::remove(socket_path_, ignored);
-    const std::vector<std::string> words = {options_.program.string(), options_.site.string(),
-                                            "--keys",                  options_.keys.string(),
-                                            "--db",                    options_.database.string(),
-                                            "--listen",                "unix:" + socket_path_.string(),
-                                            "--out",                   options_.out.string()};
+    const std::vector<std::string> words = {options_.program.string(),
+                                            options_.site.string(),
+                                            "--keys",
+                                            options_.keys.string(),
+                                            "--db",
+                                            options_.database.string(),
+                                            "--listen",
+                                            "unix:" + socket_path_.string(),
+                                            "--out",
+                                            options_.out.string()};
     std::vector<char *> argv;
     for (const std::string &word : words) {
         argv.push_back(const_cast<char *>(word.c_str())); /* posix_spawn does not change them */
@@ -90,7 +95,8 @@ void SinkProcess::start()
 
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, options_.log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, options_.log.c_str(), O_WRONLY | O_CREAT | O_APPEND,
+                                     0644);
     posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
     const int error = posix_spawn(&pid_, options_.program.c_str(), &actions, nullptr, argv.data(), environ);
     posix_spawn_file_actions_destroy(&actions);

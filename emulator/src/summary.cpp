@@ -27,9 +27,9 @@ double rounded(double value, int digits)
 
 Json energy_json(const EnergyMj &energy)
 {
-    return {{"radio_tx", rounded(energy.radio_tx, 3)},   {"radio_rx", rounded(energy.radio_rx, 3)},
-            {"cpu", rounded(energy.cpu, 3)},             {"cpu_sleep", rounded(energy.cpu_sleep, 3)},
-            {"camera", rounded(energy.camera, 3)},       {"total", rounded(energy.total(), 3)}};
+    return {{"radio_tx", rounded(energy.radio_tx, 3)}, {"radio_rx", rounded(energy.radio_rx, 3)},
+            {"cpu", rounded(energy.cpu, 3)},           {"cpu_sleep", rounded(energy.cpu_sleep, 3)},
+            {"camera", rounded(energy.camera, 3)},     {"total", rounded(energy.total(), 3)}};
 }
 
 Json error_json(const MapError &error)
@@ -64,9 +64,9 @@ Json drops_json(const EmulatedNode &node)
 {
     const tsr_node_counters &counters = node.counters();
     const tsr_mac_counters &mac = node.mac_counters();
-    return {{"route", counters.dropped_route},     {"format", counters.dropped_format},
-            {"foreign", counters.dropped_foreign}, {"auth", counters.dropped_auth + mac.dropped_auth},
-            {"replay", counters.dropped_replay},   {"frame_format", mac.dropped_format},
+    return {{"route", counters.dropped_route},      {"format", counters.dropped_format},
+            {"foreign", counters.dropped_foreign},  {"auth", counters.dropped_auth + mac.dropped_auth},
+            {"replay", counters.dropped_replay},    {"frame_format", mac.dropped_format},
             {"frame_repeated", mac.dropped_replay}, {"frame_queue", mac.dropped_queue}};
 }
 
@@ -118,11 +118,10 @@ std::size_t count_received(const std::vector<ReceivedMap> &maps, std::uint16_t n
 
 Json pair_json(const SitePair &pair, const Json &node, const std::vector<ReceivedMap> &maps)
 {
-    Json json{{"name", pair.name},     {"lead", pair.lead},
-              {"wing", pair.wing},     {"width", pair.width},
-              {"height", pair.height}, {"disparities", pair.disparities}};
-    for (const char *key : {"frames_watched", "frames_woken", "maps_made", "maps_withheld", "maps_sent", "maps_lost",
-                            "maps_received"}) {
+    Json json{{"name", pair.name},   {"lead", pair.lead},     {"wing", pair.wing},
+              {"width", pair.width}, {"height", pair.height}, {"disparities", pair.disparities}};
+    for (const char *key :
+         {"frames_watched", "frames_woken", "maps_made", "maps_withheld", "maps_sent", "maps_lost", "maps_received"}) {
         json[key] = node.at(key);
     }
     json["maps"] = Json::array();
@@ -147,8 +146,8 @@ Json pair_json(const SitePair &pair, const Json &node, const std::vector<Receive
 Json totals_json(const Json &nodes)
 {
     Json totals = Json::object();
-    for (const char *key : {"frames_watched", "frames_woken", "maps_made", "maps_withheld", "maps_sent", "maps_lost",
-                            "maps_received"}) {
+    for (const char *key :
+         {"frames_watched", "frames_woken", "maps_made", "maps_withheld", "maps_sent", "maps_lost", "maps_received"}) {
         totals[key] = 0;
     }
     std::uint64_t frames = 0;

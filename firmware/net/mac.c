@@ -162,8 +162,8 @@ static void begin_next(struct tsr_mac *mac, uint64_t now_us)
             .counter = mac->counter++,
         };
         size_t len = 0;
-        enum tsr_status status = tsr_frame_seal(&header, mac->link_cipher, frame->payload, frame->len, mac->psdu,
-                                                sizeof mac->psdu, &len);
+        enum tsr_status status =
+            tsr_frame_seal(&header, mac->link_cipher, frame->payload, frame->len, mac->psdu, sizeof mac->psdu, &len);
         if (status != TSR_OK) {
             finish_frame(mac, status, now_us);
             continue;

@@ -28,26 +28,21 @@ static bool counter_is_fresh(struct tsr_node *node, const struct tsr_message_hea
     return true;
 }
 
-/* The key that origin shares with this node, or NULL. */
-static const struct tsr_cipher *cipher_of(const struct tsr_node *node, const struct tsr_message_header *header)
+/* Whether origin and key use belong together: the partner's or the sink's. */
+static bool origin_is_known(const struct tsr_node *node, const struct tsr_message_header *header)
 {
-    if (header->key_use == TSR_KEY_PAIR && header->origin == node->config.partner) {
-        return &node->pair_cipher;
-    }
-    if (header->key_use == TSR_KEY_NODE && header->origin == TSR_ADDRESS_SINK) {
-        return &node->node_cipher;
-    }
-    return NULL;
+    return header->key_use == TSR_KEY_PAIR ? header->origin == node->config.partner
+                                           : header->origin == TSR_ADDRESS_SINK;
 }
 
 static void take_short(struct tsr_node *node, const struct tsr_fragment *fragment,
                        const struct tsr_message_header *header, uint64_t frame_time_us, uint64_t now_us)
 {
-    const struct tsr_cipher *cipher = cipher_of(node, header);
-    if (cipher == NULL) {
+    if (!origin_is_known(node, header)) {
         node->counters.dropped_foreign++;
         return;
     }
+    const struct tsr_cipher *cipher = header->key_use == TSR_KEY_PAIR ? &node->pair_cipher : &node->node_cipher;
     uint8_t message[TSR_FRAGMENT_PIECE_MAX];
     memcpy(message, fragment->piece, fragment->piece_len);
     size_t body_len = 0;
@@ -111,8 +106,8 @@ static void take_piece(struct tsr_node *node, const struct tsr_fragment *fragmen
     }
 }
 
-void tsr_node_take_fragment(struct tsr_node *node, const struct tsr_fragment *fragment,
-                            uint64_t frame_time_us, uint64_t now_us)
+void tsr_node_take_fragment(struct tsr_node *node, const struct tsr_fragment *fragment, uint64_t frame_time_us,
+                            uint64_t now_us)
 {
     struct tsr_message_header header;
     if (fragment->count == 1 &&

@@ -62,8 +62,8 @@ bool tsr_node_is_camera(enum tsr_role role);
 bool tsr_node_watches(enum tsr_role role);
 
 /* inbox.c: a fragment addressed to this node. */
-void tsr_node_take_fragment(struct tsr_node *node, const struct tsr_fragment *fragment,
-                            uint64_t frame_time_us, uint64_t now_us);
+void tsr_node_take_fragment(struct tsr_node *node, const struct tsr_fragment *fragment, uint64_t frame_time_us,
+                            uint64_t now_us);
 void tsr_node_reset_inbox(struct tsr_node *node);
 
 /* outbox.c */

@@ -32,13 +32,13 @@ static void start_decoding(struct tsr_node *node, const struct tsr_message_heade
     struct tsr_gray_decoder *decoder = (struct tsr_gray_decoder *)(void *)node->scratch;
     struct tsr_body_capture capture;
     struct tsr_gray_info info;
-    bool ours = (!node->partner_heard || header->counter > node->partner_counter) &&
-                tsr_body_read_capture(body, body_len, &capture) == TSR_OK && capture.capture_id == node->capture_id &&
-                capture.attempt == node->attempt &&
-                tsr_gray_decode_start(decoder, body + TSR_BODY_VIEW_HEADER_LEN, body_len - TSR_BODY_VIEW_HEADER_LEN,
-                                      node->scratch + sizeof *decoder, node->scratch_cap - sizeof *decoder,
-                                      &info) == TSR_OK &&
-                info.width == match->width && info.height == match->height;
+    bool ours =
+        (!node->partner_heard || header->counter > node->partner_counter) &&
+        tsr_body_read_capture(body, body_len, &capture) == TSR_OK && capture.capture_id == node->capture_id &&
+        capture.attempt == node->attempt &&
+        tsr_gray_decode_start(decoder, body + TSR_BODY_VIEW_HEADER_LEN, body_len - TSR_BODY_VIEW_HEADER_LEN,
+                              node->scratch + sizeof *decoder, node->scratch_cap - sizeof *decoder, &info) == TSR_OK &&
+        info.width == match->width && info.height == match->height;
     node->partner_heard = true;
     node->partner_counter = header->counter > node->partner_counter ? header->counter : node->partner_counter;
     if (!ours) {

@@ -45,8 +45,7 @@ bool tsr_node_uplink_free(const struct tsr_node *node)
     return !node->uplink.waiting;
 }
 
-void tsr_node_send_uplink(struct tsr_node *node, const uint8_t *fragment, size_t len, uint64_t time_us,
-                          uint64_t now_us)
+void tsr_node_send_uplink(struct tsr_node *node, const uint8_t *fragment, size_t len, uint64_t time_us, uint64_t now_us)
 {
     uint8_t body[TSR_LINK_UPLINK_HEADER_LEN + TSR_FRAME_PAYLOAD_MAX];
     struct tsr_writer writer = tsr_writer_make(body, sizeof body);

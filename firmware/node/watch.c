@@ -63,8 +63,8 @@ static void send_wake(struct tsr_node *node, uint64_t now_us)
     const struct tsr_body_capture wake = {node->capture_id, node->attempt};
     uint8_t body[TSR_BODY_WAKE_LEN];
     tsr_body_write_capture(&wake, body);
-    if (node->attempt > WAKE_ATTEMPTS_MAX || tsr_node_send_short(node, TSR_MESSAGE_WAKE, node->config.partner, body,
-                                                                 sizeof body, TOKEN_WAKE) != TSR_OK) {
+    if (node->attempt > WAKE_ATTEMPTS_MAX ||
+        tsr_node_send_short(node, TSR_MESSAGE_WAKE, node->config.partner, body, sizeof body, TOKEN_WAKE) != TSR_OK) {
         tsr_node_abandon_capture(node, now_us);
         return;
     }

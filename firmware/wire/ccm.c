@@ -83,7 +83,7 @@ enum tsr_status tsr_ccm_start(struct tsr_ccm *ccm, const struct tsr_cipher *ciph
 static enum tsr_status next_stream_block(struct tsr_ccm *ccm)
 {
     uint8_t *counter = ccm->counter_block + 1 + TSR_CCM_NONCE_LEN;
-    put_be16(counter, (size_t)((counter[0] << 8 | counter[1]) + 1));
+    put_be16(counter, ((size_t)counter[0] << 8 | counter[1]) + 1u);
     return ccm->cipher->ops->encrypt(&ccm->cipher->key, ccm->counter_block, ccm->stream);
 }
 

@@ -9,9 +9,11 @@
 #include <cmath>
 #include <utility>
 
-namespace tsr {
+namespace tsr
+{
 
-namespace {
+namespace
+{
 
 constexpr std::uint16_t kBroadcast = 0xffff;
 constexpr std::size_t kAckLen = 5;
@@ -57,12 +59,12 @@ struct Air::Radio {
     std::uint16_t pan_id = 0;
     std::uint16_t address = 0;
     bool receiving = false;
-    bool sending = false;               /* its own PSDU is on air */
-    bool busy = false;                  /* between transmit() and TX_DONE */
+    bool sending = false;                 /* its own PSDU is on air */
+    bool busy = false;                    /* between transmit() and TX_DONE */
     std::uint64_t listening_since_us = 0; /* neither asleep nor sending since then */
-    std::vector<std::uint8_t> psdu;     /* of the transmit() under way */
+    std::vector<std::uint8_t> psdu;       /* of the transmit() under way */
     std::uint64_t frame_end_us = 0;
-    std::uint64_t attempt = 0;          /* counts transmit() calls */
+    std::uint64_t attempt = 0; /* counts transmit() calls */
     std::vector<int> rssi_dbm; /* heard from each radio, filled lazily by index */
     mutable AirTimes times;
     mutable std::uint64_t accounted_us = 0;
@@ -81,7 +83,8 @@ struct Air::Transmission {
 const tsr_radio_ops Air::kOps = {&Air::configure, &Air::set_receiving, &Air::transmit};
 
 Air::Air(const AirModel &model, Clock clock)
-    : model_(model), clock_(std::move(clock)), loss_q16_(static_cast<std::uint32_t>(std::lround(model.frame_loss * 65536)))
+    : model_(model), clock_(std::move(clock)),
+      loss_q16_(static_cast<std::uint32_t>(std::lround(model.frame_loss * 65536)))
 {
 }
 
@@ -131,8 +134,9 @@ void Air::account(Radio &radio) const
     const std::uint64_t now_us = clock_.now_us();
     const std::uint64_t passed_us = now_us - radio.accounted_us;
     radio.accounted_us = now_us;
-    (radio.sending ? radio.times.transmitting : radio.receiving ? radio.times.receiving : radio.times.sleeping) +=
-        passed_us;
+    (radio.sending     ? radio.times.transmitting
+     : radio.receiving ? radio.times.receiving
+                       : radio.times.sleeping) += passed_us;
 }
 
 AirTimes Air::times(std::size_t index) const

@@ -8,7 +8,8 @@
 #include <algorithm>
 #include <utility>
 
-namespace tsr {
+namespace tsr
+{
 
 const tsr_camera_ops RecordedCamera::kOps = {&RecordedCamera::capture};
 

@@ -88,8 +88,8 @@ Picture pick(const Picture &picture, int width, int height)
     Picture result = make_picture(width, height, 0);
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
-            result.at(x, y) = picture.at((2 * x + 1) * picture.width / (2 * width),
-                                         (2 * y + 1) * picture.height / (2 * height));
+            result.at(x, y) =
+                picture.at((2 * x + 1) * picture.width / (2 * width), (2 * y + 1) * picture.height / (2 * height));
         }
     }
     return result;

@@ -68,8 +68,8 @@ class Random
     double normal()
     {
         const std::uint64_t bits = next();
-        const double sum = static_cast<double>((bits & 0xffffu) + (bits >> 16 & 0xffffu) + (bits >> 32 & 0xffffu) +
-                                               (bits >> 48));
+        const double sum =
+            static_cast<double>((bits & 0xffffu) + (bits >> 16 & 0xffffu) + (bits >> 32 & 0xffffu) + (bits >> 48));
         /* Variance of one uniform on 0..65535 is 65536^2 / 12. */
         return (sum - 4 * 32767.5) / (65536.0 * std::sqrt(4.0 / 12.0));
     }

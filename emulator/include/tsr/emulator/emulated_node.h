@@ -23,7 +23,8 @@
 #include "tsr/hal/air.h"
 #include "tsr/hal/recorded_camera.h"
 
-namespace tsr {
+namespace tsr
+{
 
 /* A node entered a phase. */
 struct PhaseChange {

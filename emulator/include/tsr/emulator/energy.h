@@ -18,18 +18,19 @@ extern "C" {
 }
 #include "tsr/hal/air.h"
 
-namespace tsr {
+namespace tsr
+{
 
 struct PowerModel {
     double supply_v = 3.0;
-    double radio_tx_ma = 6.40;     /* nRF52840 PS v1.7, 6.20.15.3: 0 dBm, DC/DC */
-    double radio_rx_ma = 6.53;     /* same: 802.15.4, DC/DC */
-    double radio_sleep_ma = 0.0;   /* counted in cpu_sleep_ma */
-    double cpu_ua_per_mhz = 52.0;  /* same, 5.2.1.1: running from flash, cache, DC/DC */
+    double radio_tx_ma = 6.40;    /* nRF52840 PS v1.7, 6.20.15.3: 0 dBm, DC/DC */
+    double radio_rx_ma = 6.53;    /* same: 802.15.4, DC/DC */
+    double radio_sleep_ma = 0.0;  /* counted in cpu_sleep_ma */
+    double cpu_ua_per_mhz = 52.0; /* same, 5.2.1.1: running from flash, cache, DC/DC */
     double cpu_mhz = 64.0;
-    double cpu_sleep_ma = 0.0032;  /* System ON with full RAM retention */
+    double cpu_sleep_ma = 0.0032;        /* System ON with full RAM retention */
     double cycles_per_instruction = 1.3; /* an estimate; instructions are exact */
-    double camera_mw = 2.0;        /* HM01B0 product brief: QVGA at 30 fps */
+    double camera_mw = 2.0;              /* HM01B0 product brief: QVGA at 30 fps */
 };
 
 struct EnergyMj {

@@ -12,7 +12,8 @@
 #include <queue>
 #include <vector>
 
-namespace tsr {
+namespace tsr
+{
 
 class EventQueue
 {

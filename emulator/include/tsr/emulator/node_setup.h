@@ -15,7 +15,8 @@ extern "C" {
 #include "tsr/host/keys.h"
 #include "tsr/host/site.h"
 
-namespace tsr {
+namespace tsr
+{
 
 struct NodeSetup {
     tsr_node_config config{};

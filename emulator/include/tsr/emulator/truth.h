@@ -29,7 +29,7 @@ struct MapError {
     double bad_1 = 0;               /* more than 1 px wrong, over matched pixels */
     double median_px = 0;           /* median |disparity error|, over matched pixels */
     double mean_px = 0;
-    double median_mm = 0;           /* median |depth error|, Z = f B / (d + d0) */
+    double median_mm = 0;            /* median |depth error|, Z = f B / (d + d0) */
     double median_depth_percent = 0; /* the same, of the true depth */
 };
 

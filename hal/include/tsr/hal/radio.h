@@ -37,7 +37,7 @@
 #define TSR_RADIO_ACK_WAIT_US (54u * TSR_RADIO_SYMBOL_US)   /* macAckWaitDuration, Table 8-94, 2.4 GHz */
 
 enum tsr_radio_outcome {
-    TSR_RADIO_SENT,         /* no acknowledgement was asked for */
+    TSR_RADIO_SENT, /* no acknowledgement was asked for */
     TSR_RADIO_ACKED,
     TSR_RADIO_NO_ACK,
     TSR_RADIO_CHANNEL_BUSY, /* nothing was sent */

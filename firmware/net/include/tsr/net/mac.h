@@ -36,10 +36,10 @@
 #define TSR_TIME_NEVER UINT64_MAX
 
 /* IEEE 802.15.4-2015, Table 8-94, defaults. */
-#define TSR_MAC_MIN_BE 3u            /* macMinBe */
-#define TSR_MAC_MAX_BE 5u            /* macMaxBe */
-#define TSR_MAC_MAX_CSMA_BACKOFFS 4u /* macMaxCsmaBackoffs */
-#define TSR_MAC_MAX_FRAME_RETRIES 3u /* macMaxFrameRetries */
+#define TSR_MAC_MIN_BE 3u                                   /* macMinBe */
+#define TSR_MAC_MAX_BE 5u                                   /* macMaxBe */
+#define TSR_MAC_MAX_CSMA_BACKOFFS 4u                        /* macMaxCsmaBackoffs */
+#define TSR_MAC_MAX_FRAME_RETRIES 3u                        /* macMaxFrameRetries */
 #define TSR_MAC_UNIT_BACKOFF_US (20u * TSR_RADIO_SYMBOL_US) /* aUnitBackoffPeriod */
 
 struct tsr_mac_config {
@@ -72,15 +72,15 @@ struct tsr_mac_neighbour {
 
 /* Every frame ends in exactly one of these. */
 struct tsr_mac_counters {
-    uint32_t sent;             /* acknowledged */
-    uint32_t unacknowledged;   /* gave up after the retries */
-    uint32_t channel_busy;     /* gave up in CSMA */
+    uint32_t sent;           /* acknowledged */
+    uint32_t unacknowledged; /* gave up after the retries */
+    uint32_t channel_busy;   /* gave up in CSMA */
     uint32_t retries;
-    uint32_t received;         /* handed up */
-    uint32_t dropped_format;   /* not a frame of ours, or for somebody else */
-    uint32_t dropped_auth;     /* wrong MIC */
-    uint32_t dropped_replay;   /* old counter; repetitions after a lost ack count here */
-    uint32_t dropped_queue;    /* receive ring full: at most one frame before the radio stops listening */
+    uint32_t received;          /* handed up */
+    uint32_t dropped_format;    /* not a frame of ours, or for somebody else */
+    uint32_t dropped_auth;      /* wrong MIC */
+    uint32_t dropped_replay;    /* old counter; repetitions after a lost ack count here */
+    uint32_t dropped_queue;     /* receive ring full: at most one frame before the radio stops listening */
     uint32_t dropped_neighbour; /* neighbour table full */
 };
 

@@ -16,7 +16,7 @@ struct tsr_route {
 };
 
 struct tsr_routes {
-    uint16_t parent;              /* TSR_ADDRESS_NONE at the gateway */
+    uint16_t parent; /* TSR_ADDRESS_NONE at the gateway */
     uint16_t descendant_count;
     const struct tsr_route *descendants; /* kept */
 };

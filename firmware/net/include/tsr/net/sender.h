@@ -28,9 +28,9 @@
 #define TSR_SENDER_TRIES_MAX 12u
 
 struct tsr_sender_counters {
-    uint32_t fragments;        /* given to the MAC, repetitions included */
-    uint32_t fragments_again;  /* of these, asked for again or not acknowledged */
-    uint32_t polls;            /* repeated after no STATUS */
+    uint32_t fragments;       /* given to the MAC, repetitions included */
+    uint32_t fragments_again; /* of these, asked for again or not acknowledged */
+    uint32_t polls;           /* repeated after no STATUS */
 };
 
 /* Content private to the module. */

@@ -124,28 +124,28 @@ struct tsr_node_hal { /* instances are kept */
 /* Every frame watched, view, map and fragment ends in exactly one of these. */
 struct tsr_node_counters {
     uint32_t frames_watched;
-    uint32_t frames_woken;     /* of these: began a capture of the pair */
-    uint32_t captures_failed;  /* camera error, wing not reached, view not received */
-    uint32_t wakes_sent;       /* WAKE frames, repetitions included */
-    uint32_t views_sent;       /* wing: accepted by the lead */
-    uint32_t views_lost;       /* wing: given up or refused */
-    uint32_t view_bytes;       /* wing: sealed, sent once */
+    uint32_t frames_woken;    /* of these: began a capture of the pair */
+    uint32_t captures_failed; /* camera error, wing not reached, view not received */
+    uint32_t wakes_sent;      /* WAKE frames, repetitions included */
+    uint32_t views_sent;      /* wing: accepted by the lead */
+    uint32_t views_lost;      /* wing: given up or refused */
+    uint32_t view_bytes;      /* wing: sealed, sent once */
     uint32_t maps_made;
-    uint32_t maps_withheld;    /* similar to the last one the sink has */
-    uint32_t maps_sent;        /* committed by the sink */
-    uint32_t maps_lost;        /* given up or refused */
-    uint32_t map_bytes;        /* sealed, sent once, with reference image */
+    uint32_t maps_withheld;      /* similar to the last one the sink has */
+    uint32_t maps_sent;          /* committed by the sink */
+    uint32_t maps_lost;          /* given up or refused */
+    uint32_t map_bytes;          /* sealed, sent once, with reference image */
     uint32_t references_omitted; /* would not fit beside the map */
-    uint32_t forwarded;        /* fragments handed on */
-    uint32_t dropped_route;    /* no next hop, or out of hops */
-    uint32_t dropped_format;   /* fragments that do not follow their format */
-    uint32_t dropped_foreign;  /* for this node, but nothing it expects */
-    uint32_t dropped_auth;     /* messages whose tag does not verify */
+    uint32_t forwarded;          /* fragments handed on */
+    uint32_t dropped_route;      /* no next hop, or out of hops */
+    uint32_t dropped_format;     /* fragments that do not follow their format */
+    uint32_t dropped_foreign;    /* for this node, but nothing it expects */
+    uint32_t dropped_auth;       /* messages whose tag does not verify */
     uint32_t dropped_replay;
-    uint32_t uplinks;          /* gateway: fragments given to the sink */
+    uint32_t uplinks; /* gateway: fragments given to the sink */
     uint32_t uplink_repeats;
     uint32_t downlinks;
-    uint32_t port_rejected;    /* gateway: link frames that do not follow their format */
+    uint32_t port_rejected; /* gateway: link frames that do not follow their format */
 };
 
 struct tsr_node_outcome {
@@ -157,11 +157,11 @@ struct tsr_node_outcome {
 /* Where a node's memory goes: see docs/memory.md. Offsets from the arena's
  * start; regions with the same offset overlay each other in time. */
 enum tsr_region {
-    TSR_REGION_PAIR,      /* both frames, then the map over them; the wing's one frame */
-    TSR_REGION_MESSAGE,   /* the message under way, in or out */
-    TSR_REGION_LAST_MAP,  /* the last map the sink has committed */
-    TSR_REGION_CHANGE,    /* background model */
-    TSR_REGION_SCRATCH,   /* matcher, median, coders: one at a time */
+    TSR_REGION_PAIR,     /* both frames, then the map over them; the wing's one frame */
+    TSR_REGION_MESSAGE,  /* the message under way, in or out */
+    TSR_REGION_LAST_MAP, /* the last map the sink has committed */
+    TSR_REGION_CHANGE,   /* background model */
+    TSR_REGION_SCRATCH,  /* matcher, median, coders: one at a time */
     TSR_REGION_COUNT
 };
 

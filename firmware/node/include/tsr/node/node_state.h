@@ -52,13 +52,13 @@ struct tsr_node {
     bool partner_heard;
 
     enum tsr_node_phase phase;
-    uint64_t phase_timer_us;  /* next watch, or end of patience */
+    uint64_t phase_timer_us; /* next watch, or end of patience */
     uint64_t next_watch_us;
-    bool recapture;           /* what has changed did not reach the sink */
+    bool recapture; /* what has changed did not reach the sink */
     bool has_last_map;
     uint16_t capture_id;
     uint8_t attempt;
-    bool wake_due;            /* wing: a WAKE waits for the camera */
+    bool wake_due; /* wing: a WAKE waits for the camera */
     uint64_t capture_at_us;
     uint64_t capture_time_us; /* start of exposure of the left view */
     struct tsr_capture left;
@@ -78,8 +78,8 @@ struct tsr_node {
     struct tsr_change change;
     uint16_t disparities; /* the matcher's D, its default resolved */
     struct tsr_reassembly inbox;
-    bool inbox_ready;         /* complete, being opened or used */
-    bool inbox_done;          /* inbox_done_id was accepted */
+    bool inbox_ready; /* complete, being opened or used */
+    bool inbox_done;  /* inbox_done_id was accepted */
     uint16_t inbox_done_id;
 
     /* The resumable work under way: one at a time. */

@@ -25,7 +25,8 @@ extern "C" {
 #include "tsr/hal/radio.h"
 }
 
-namespace tsr {
+namespace tsr
+{
 
 /* Path loss at distance d: reference_loss_db + 10 exponent log10(d / 1 m)
  * (Rappaport, Wireless Communications, 2nd ed., eq. 4.68, without shadowing). */

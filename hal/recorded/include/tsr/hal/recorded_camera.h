@@ -20,7 +20,8 @@ extern "C" {
 }
 #include "tsr/host/recorded_frames.h"
 
-namespace tsr {
+namespace tsr
+{
 
 class RecordedCamera
 {

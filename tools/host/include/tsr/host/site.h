@@ -5,10 +5,10 @@
  * Camera axes: x right, y down, z forward. A pose takes camera coordinates to
  * site coordinates, p_site = R p_camera + position, R row-major.
  *
- * Depth of a pair: Z = f B / (d + d0), docs/math.md, eq. (1) to (4). The node matches left pixel (x, y) with
- * right pixel (x - d - search_start, y), so
+ * The node matches left pixel (x, y) with right pixel (x - d - search_start, y):
  *
- *   d0 = search_start + cx_right - cx_left
+ *   Z = f B / (d + d0)                            docs/math.md, eq. (4)
+ *   d0 = search_start + cx_right - cx_left        eq. (3)
  *
  * SPDX-License-Identifier: Apache-2.0
  */
