@@ -52,6 +52,16 @@ void copy_key(const Key &key, std::uint8_t (&to)[TSR_AES_KEY_LEN])
     std::copy(key.begin(), key.end(), to);
 }
 
+void set_thresholds(tsr_node_config &config, const SiteThresholds &thresholds)
+{
+    config.change.deviation_min = static_cast<std::uint8_t>(thresholds.change_deviation_min);
+    config.change.min_cells = static_cast<std::uint16_t>(thresholds.change_cells_min);
+    config.similarity.clip_q4 = static_cast<std::uint8_t>(std::lround(thresholds.similarity_clip_px * kDisparityOne));
+    config.similarity.threshold_q8 =
+        static_cast<std::uint16_t>(std::lround(thresholds.similarity_px2 * kDisparityOne * kDisparityOne));
+    config.similarity.min_blocks = static_cast<std::uint16_t>(thresholds.similarity_blocks);
+}
+
 void set_up_camera(tsr_node_config &config, const SiteNode &node, const SitePair &pair)
 {
     const auto width = static_cast<std::uint16_t>(pair.width);
@@ -95,6 +105,7 @@ std::unique_ptr<NodeSetup> set_up_node(const Site &site, const SiteNode &node, c
             copy_key(keys.pair_key(pair->lead, pair->wing).value(), config.pair_key);
         }
         set_up_camera(config, node, *pair);
+        set_thresholds(config, site.thresholds);
     }
     const char *field = nullptr;
     if (tsr_node_check(&config, &field) != TSR_OK) {
