@@ -10,7 +10,6 @@
  */
 #include "gray_row.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #define ABOVE_FIRST_ROW 128
@@ -94,7 +93,7 @@ static uint8_t code_pixel(struct tsr_gray_model *model, const struct tsr_range_p
         tsr_side_of(a->w, a->predicted) + 3u * tsr_side_of(a->n, a->predicted) + 9u * tsr_side_of(a->ne, a->predicted);
     const bool below = tsr_port_bit(port, &contexts[SIGN_AT + sides], error < 0);
     struct tsr_range_bit *const magnitudes = &contexts[MAGNITUDE_AT + TSR_MAGNITUDE_CONTEXT_COUNT * a->energy];
-    const int distance = 1 + (int)tsr_port_magnitude(port, magnitudes, (uint32_t)(abs(error) - 1));
+    const int distance = 1 + (int)tsr_port_magnitude(port, magnitudes, (uint32_t)((error < 0 ? -error : error) - 1));
     const int coded = a->predicted + (below ? -distance : distance) * (2 * near + 1);
     return (uint8_t)(coded < 0 ? 0 : coded > 255 ? 255 : coded);
 }

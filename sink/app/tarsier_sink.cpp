@@ -6,6 +6,7 @@
  * SPDX-License-Identifier: Apache-2.0
  */
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -53,21 +54,32 @@ void log_map(const tsr::MapReport &map)
                  map.mse_px2 ? fmt::format(", MSE {:.4f} px^2", *map.mse_px2) : "");
 }
 
-tsr::SessionNumbers receive(const Options &options, const tsr::Site &site, tsr::Store &store)
+/* Everything that can be refused is read before the database is made. */
+struct Entrance {
+    tsr::KeyRing keys;
+    tsr::ListenAddress address;
+    bool once = false;
+};
+
+Entrance open_entrance(const Options &options, const tsr::Site &site)
 {
-    const tsr::KeyRing keys = tsr::load_keys(options.keys);
-    tsr::check_keys(keys, site, options.keys);
-    const tsr::ListenAddress address = tsr::parse_listen_address(options.listen);
-    if (keys.test && address.kind == tsr::ListenAddress::Kind::serial) {
+    Entrance entrance{tsr::load_keys(options.keys), tsr::parse_listen_address(options.listen), options.once};
+    tsr::check_keys(entrance.keys, site, options.keys);
+    if (entrance.keys.test && entrance.address.kind == tsr::ListenAddress::Kind::serial) {
         throw tsr::InputError(options.keys.string(), "test", "test keys are refused for a board on a serial port");
     }
-    tsr::Receiver receiver(site, keys, store);
+    return entrance;
+}
+
+tsr::SessionNumbers receive(const Entrance &entrance, const tsr::Site &site, tsr::Store &store)
+{
+    tsr::Receiver receiver(site, entrance.keys, store);
     receiver.on_map(log_map);
     tsr::LinkServer server(receiver, site.pan_id);
     tsr::GatewayOptions gateway;
-    gateway.once = options.once;
+    gateway.once = entrance.once;
     gateway.log = [](const std::string &line) { spdlog::info("{}", line); };
-    tsr::serve_gateways(address, server, gateway);
+    tsr::serve_gateways(entrance.address, server, gateway);
     return {receiver.tally(), server.counts(), receiver.repeated()};
 }
 
@@ -80,9 +92,13 @@ int run(const Options &options)
         throw tsr::InputError("command line", "--listen and --keys", "are required without --export-only");
     }
     const tsr::Site site = tsr::load_site(options.site);
+    std::optional<Entrance> entrance;
+    if (!options.export_only) {
+        entrance = open_entrance(options, site);
+    }
     tsr::Store store(options.database, site.pan_id,
                      options.export_only ? tsr::Store::Open::existing : tsr::Store::Open::create);
-    const tsr::SessionNumbers session = options.export_only ? tsr::SessionNumbers{} : receive(options, site, store);
+    const tsr::SessionNumbers session = entrance ? receive(*entrance, site, store) : tsr::SessionNumbers{};
     const tsr::ExportResult result = tsr::export_site(site, store, session, options.out);
     spdlog::info("{} maps and a cloud of {} points written to {}", result.maps, result.points, options.out.string());
     return 0;

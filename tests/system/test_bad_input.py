@@ -1,0 +1,157 @@
+"""Bad input gets one line on stderr that names file and field, exit status 2, and nothing half-written."""
+# SPDX-License-Identifier: Apache-2.0
+import os
+import pathlib
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from run_site import BUILD, check, emulate, make_scene
+
+EMULATOR = BUILD / "bin/tarsier-emulator"
+SINK = BUILD / "bin/tarsier-sink"
+cases = 0
+
+
+def refuse(what, command, *mentions, out=None):
+    """The command must refuse with one line that mentions everything named; out must stay without results."""
+    global cases
+    cases += 1
+    run = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=60)
+    lines = run.stderr.strip().splitlines()
+    check(run.returncode == 2, f"{what}: exit status {run.returncode}: {run.stderr}")
+    check(len(lines) == 1, f"{what}: {len(lines)} lines: {run.stderr}")
+    for mention in mentions:
+        check(mention in lines[0], f"{what}: does not name {mention}: {lines[0]}")
+    if out is not None and out.is_dir():
+        left = [file.name for file in out.iterdir() if file.name in ("summary.json", "cloud.ply", "capture.pcapng")]
+        check(not left, f"{what}: left {left} behind")
+    print(f"{what}: {lines[0]}")
+
+
+def run_pair(left, right, out, *more):
+    return [EMULATOR, "--pair", left, right, "--focal-px", "466", "--baseline-mm", "160", "--out", out, *more]
+
+
+def copy_frames(source, target, count=3):
+    target.mkdir()
+    for file in sorted(source.glob("*.pgm"))[:count]:
+        shutil.copy(file, target)
+    return target
+
+
+def with_site(scene, name, pattern, replacement, count=1):
+    """A copy of the scene's site file with one edit, beside the recordings."""
+    text = (scene / "site.toml").read_text()
+    edited = re.sub(pattern, replacement, text, count=count)
+    check(edited != text, f"{name}: the edit did not apply")
+    file = scene / name
+    file.write_text(edited)
+    return file
+
+
+def frames(folder, scene):
+    out = folder / "out"
+    left = scene / "left160"
+    right = scene / "right160"
+    refuse("no folder", run_pair(folder / "nowhere", right, out), "nowhere", out=out)
+    (folder / "empty").mkdir()
+    refuse("no frames", run_pair(folder / "empty", right, out), "empty", out=out)
+    refuse("other size", run_pair(left, scene / "right320", out), "right320", "size", out=out)
+
+    truncated = copy_frames(left, folder / "truncated")
+    victim = truncated / "001.pgm"
+    victim.write_bytes(victim.read_bytes()[:5000])
+    refuse("truncated PGM", run_pair(truncated, right, out), "001.pgm", out=out)
+
+    lying = copy_frames(left, folder / "lying")
+    (lying / "000.pgm").write_bytes(b"P5\n60000 60000\n255\n" + bytes(100))
+    refuse("lying PGM", run_pair(lying, right, out), "000.pgm", out=out)
+
+    png = copy_frames(left, folder / "png", 0)
+    header = b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + b"IHDR" + struct.pack(">IIBBBBB", 160, 120, 8, 0, 0, 0, 0)
+    (png / "000.png").write_bytes(header)
+    refuse("truncated PNG", run_pair(png, right, out), "000.png", out=out)
+
+    if os.geteuid() != 0:  # root reads everything
+        locked = copy_frames(left, folder / "locked")
+        (locked / "000.pgm").chmod(0)
+        refuse("unreadable frame", run_pair(locked, right, out), "000.pgm", out=out)
+
+
+def command_lines(folder, scene):
+    out = folder / "out"
+    refuse("nothing to run", [EMULATOR, "--out", out], "--pair")
+    refuse("unknown option", [EMULATOR, scene / "site.toml", "--out", out, "--fast"], "--fast")
+    refuse("no focal length", [EMULATOR, "--pair", scene / "left160", scene / "right160", "--out", out], "--focal-px")
+    (folder / "file").write_text("in the way")
+    refuse("out is a file", [EMULATOR, scene / "site.toml", "--out", folder / "file"], "file")
+    refuse("out cannot be made", [EMULATOR, scene / "site.toml", "--out", "/proc/tarsier"], "/proc/tarsier")
+    refuse("no sink program", [EMULATOR, scene / "site.toml", "--out", out, "--sink", folder / "nosink"], "nosink")
+
+
+def sites(folder, scene):
+    out = folder / "out"
+    edits = (("unknown pair", r"lead = 3", "lead = 77", "77"),
+             ("cycle", r"parent = 1\b", "parent = 3", "parent"),
+             ("unknown field", r'name = "aloe"', 'name = "aloe"\ncolour = "red"', "colour"),
+             ("not TOML", r"\[site\]", "[site", "not_TOML.toml:1"),
+             ("negative baseline", r"baseline_mm = 160", "baseline_mm = -160", "baseline_mm"),
+             ("two gateways", r'role = "relay"', 'role = "gateway"', "gateway"),
+             ("unknown role", r'role = "relay"', 'role = "router"', "role"),
+             ("missing recordings", r'frames = "left160"', 'frames = "nowhere"', "nowhere"))
+    for name, pattern, replacement, mention in edits:
+        file = with_site(scene, name.replace(" ", "_") + ".toml", pattern, replacement)
+        refuse(name, [EMULATOR, file, "--out", out], mention, out=out)
+    refuse("no site file", [EMULATOR, scene / "none.toml", "--out", out], "none.toml", out=out)
+
+
+def geometry(folder, scene):
+    """A right camera turned by 10 degrees, and one ahead of the left one: neither pair can be rectified."""
+    turned = "[pair.right]\nposition_m = [{x}, {y}, 1.2]\nrotation = {r}\n"
+    upright = "[1, 0, 0, 0, 0, 1, 0, -1, 0]"
+    cases = (("converging cameras", turned.format(x=-0.59, y=0, r="[0.985, 0.1736, 0, 0, 0, 1, 0.1736, -0.985, 0]")),
+             ("epipole in the image", turned.format(x=-0.75, y=0.16, r=upright)))
+    text = (scene / "site.toml").read_text()
+    at = text.index("[[pair]]", text.index("[[pair]]") + 1)
+    for name, right in cases:
+        file = scene / (name.replace(" ", "_") + ".toml")
+        file.write_text(text[:at] + right + "\n" + text[at:])
+        refuse(name, [EMULATOR, file, "--out", folder / "out"], "two boards", out=folder / "out")
+
+
+def keys(folder, scene):
+    emulate(scene / "site.toml", folder / "good")
+    text = (folder / "good/keys.toml").read_text()
+
+    def sink(file):
+        return [SINK, scene / "site.toml", "--keys", file, "--db", folder / "k.db", "--out", folder / "k",
+                "--listen", f"unix:{folder / 'k.socket'}"]
+
+    def with_keys(name, content, mode=0o600):
+        file = folder / name
+        file.write_text(content)
+        file.chmod(mode)
+        return file
+
+    short = re.sub(r'link_key = "..', 'link_key = "', text)
+    refuse("short key", sink(with_keys("short.toml", short)), "short.toml", "link_key")
+    refuse("no hex key", sink(with_keys("nohex.toml", re.sub(r'link_key = "..', 'link_key = "zz', text))), "link_key")
+    refuse("readable keys", sink(with_keys("open.toml", text, 0o644)), "open.toml")
+    check(not (folder / "k.db").exists(), "a refused key file left a database")
+
+
+with tempfile.TemporaryDirectory() as name:
+    folder = pathlib.Path(name)
+    scene = folder / "scene"
+    make_scene("test_bad_input", scene)
+    frames(folder, scene)
+    command_lines(folder, scene)
+    sites(folder, scene)
+    geometry(folder, scene)
+    keys(folder, scene)
+    print(f"{cases} cases refused")
