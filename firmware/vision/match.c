@@ -22,7 +22,7 @@
 #define WINDOW_DEFAULT 9
 #define WINDOW_MIN 5
 #define CAP_ROOM 127 /* cap * window <= 127: column sums of 2 cap fit 8 bits */
-#define UNIQUENESS_DEFAULT 10
+#define UNIQUENESS_DEFAULT 15
 #define UNIQUENESS_MAX 100
 #define TEXTURE_DEFAULT 1
 #define TOLERANCE_DEFAULT 1

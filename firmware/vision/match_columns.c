@@ -64,9 +64,7 @@ static void find_runs(const struct tsr_match_config *config, unsigned x, struct 
 
 static inline uint8_t difference(uint8_t a, uint8_t b)
 {
-    uint8_t larger = a > b ? a : b;
-    uint8_t smaller = a > b ? b : a;
-    return (uint8_t)(larger - smaller);
+    return (uint8_t)(a > b ? a - b : b - a);
 }
 
 static void add_lanes(uint8_t *restrict column, unsigned count, unsigned times, uint8_t one,

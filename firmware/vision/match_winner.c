@@ -1,47 +1,25 @@
 /*
- * Searches among the sums of one pixel. Three short passes of equal lanes
- * rather than one with branches: compilers turn them into vector code.
+ * Searches among the sums of one pixel: passes of equal lanes rather than one
+ * with branches, which compilers turn into vector code.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
 #include "match_stages.h"
 
-static inline int16_t least(int16_t a, int16_t b)
-{
-    return a < b ? a : b;
-}
-
-static int16_t least_of_lanes(const int16_t *lanes)
-{
-    int16_t result = lanes[0];
-    for (unsigned i = 1; i < TSR_MATCH_LANES; i++) {
-        result = least(result, lanes[i]);
-    }
-    return result;
-}
+/* The key of a lane orders by sum and then by d. */
+#define KEY_SCALE 128
+_Static_assert(TSR_DISPARITY_COUNT_MAX <= KEY_SCALE, "d fits below the sum in a key");
 
 struct tsr_match_winner tsr_match_find_winner(const int16_t *sums, unsigned disparities)
 {
-    int16_t lanes[TSR_MATCH_LANES];
-    for (unsigned i = 0; i < TSR_MATCH_LANES; i++) {
-        lanes[i] = TSR_MATCH_SUM_NONE;
-    }
+    int32_t least = INT32_MAX;
     for (unsigned d = 0; d < disparities; d += TSR_MATCH_LANES) {
         for (unsigned i = 0; i < TSR_MATCH_LANES; i++) {
-            lanes[i] = least(lanes[i], sums[d + i]);
+            int32_t key = sums[d + i] * KEY_SCALE + (int32_t)(d + i);
+            least = key < least ? key : least;
         }
     }
-    struct tsr_match_winner winner = {least_of_lanes(lanes), 0};
-    for (unsigned i = 0; i < TSR_MATCH_LANES; i++) {
-        lanes[i] = TSR_MATCH_SUM_NONE;
-    }
-    for (unsigned d = 0; d < disparities; d += TSR_MATCH_LANES) {
-        for (unsigned i = 0; i < TSR_MATCH_LANES; i++) {
-            int16_t candidate = sums[d + i] == winner.sum ? (int16_t)(d + i) : TSR_MATCH_SUM_NONE;
-            lanes[i] = least(lanes[i], candidate);
-        }
-    }
-    winner.d = (uint8_t)least_of_lanes(lanes);
+    struct tsr_match_winner winner = {(int16_t)(least / KEY_SCALE), (uint8_t)(least % KEY_SCALE)};
     return winner;
 }
 

@@ -6,7 +6,6 @@
  */
 #include "tsr/vision/median.h"
 
-#include <stdbool.h>
 #include <string.h>
 
 #define NEIGHBOURS_MAX 9
@@ -55,9 +54,7 @@ static uint16_t filter_pixel(const struct rows *rows, unsigned x, unsigned width
             }
         }
     }
-    bool was_valid = rows->row[1][x] != TSR_DISPARITY_INVALID;
-    unsigned needed = was_valid ? TSR_MEDIAN_VALID_MIN : TSR_MEDIAN_FILL_MIN;
-    return count >= needed ? values[(count - 1u) / 2u] : TSR_DISPARITY_INVALID;
+    return count >= TSR_MEDIAN_VALID_MIN ? values[(count - 1u) / 2u] : TSR_DISPARITY_INVALID;
 }
 
 /* Scratch holds rows y - 1 and y as they were, at y's parity; each row is saved

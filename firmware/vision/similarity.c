@@ -10,21 +10,31 @@
 #define SIDE_MIN 16
 #define BLOCK_LOG2_MIN 2
 #define BLOCK_LOG2_MAX 4
-#define LARGE_WIDTH 256
+#define BLOCK_LOG2_DEFAULT 2
 #define CLIP_DEFAULT_Q4 32
-#define MIN_BLOCKS_DEFAULT 2
+/* By default the blocks that make a difference cover this many pixels, or this part of the map if that is more. */
+#define DIFFERENT_PIXELS 128u
+#define DIFFERENT_PART 600u
+
+static uint16_t default_min_blocks(const struct tsr_similarity_config *config)
+{
+    uint32_t part = (uint32_t)config->width * config->height / DIFFERENT_PART;
+    uint32_t pixels = part > DIFFERENT_PIXELS ? part : DIFFERENT_PIXELS;
+    uint32_t blocks = config->block_log2 <= BLOCK_LOG2_MAX ? pixels >> (2u * config->block_log2) : 0;
+    return (uint16_t)(blocks > 0 ? blocks : 1u);
+}
 
 static struct tsr_similarity_config resolve(const struct tsr_similarity_config *config)
 {
     struct tsr_similarity_config resolved = *config;
-    if (config->block_log2 == 0) {
-        resolved.block_log2 = config->width < LARGE_WIDTH ? BLOCK_LOG2_MAX - 1 : BLOCK_LOG2_MAX;
-    }
+    resolved.block_log2 = config->block_log2 != 0 ? config->block_log2 : BLOCK_LOG2_DEFAULT;
     resolved.clip_q4 = config->clip_q4 != 0 ? config->clip_q4 : CLIP_DEFAULT_Q4;
     if (config->threshold_q8 == 0) {
-        resolved.threshold_q8 = (uint16_t)((resolved.clip_q4 * resolved.clip_q4 + 1) / 2);
+        resolved.threshold_q8 = (uint16_t)((3 * resolved.clip_q4 * resolved.clip_q4 + 3) / 4);
     }
-    resolved.min_blocks = config->min_blocks != 0 ? config->min_blocks : MIN_BLOCKS_DEFAULT;
+    if (config->min_blocks == 0) {
+        resolved.min_blocks = default_min_blocks(&resolved);
+    }
     return resolved;
 }
 

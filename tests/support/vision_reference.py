@@ -94,7 +94,7 @@ def match(left, right, disparities, window, cap, uniqueness, texture_min, tolera
     return result
 
 
-def median(disparity_map, valid_min, fill_min):
+def median(disparity_map, valid_min):
     """Eq. (18)."""
     height, width = disparity_map.shape
     result = np.full_like(disparity_map, INVALID)
@@ -102,8 +102,7 @@ def median(disparity_map, valid_min, fill_min):
         for x in range(width):
             around = disparity_map[max(0, y - 1):y + 2, max(0, x - 1):x + 2].ravel()
             values = sorted(int(v) for v in around if v != INVALID)
-            needed = fill_min if disparity_map[y, x] == INVALID else valid_min
-            if len(values) >= needed:
+            if len(values) >= valid_min:
                 result[y, x] = values[(len(values) - 1) // 2]
     return result
 

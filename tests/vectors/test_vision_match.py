@@ -65,6 +65,7 @@ for name in ("tsr_match_scratch_len", "tsr_change_state_len"):
 LIB.tsr_similarity_is_similar.restype = ctypes.c_bool
 LIB.tsr_match_start.argtypes = [ctypes.c_void_p, ctypes.c_void_p, Gray, Gray, ctypes.c_void_p, SIZE, ctypes.c_void_p,
                                 SIZE]
+DEFAULT_UNIQUENESS, DEFAULT_TEXTURE, MEDIAN_VALID_MIN = 15, 1, 4
 SEED = int(os.environ.get("SEED", "1"))
 RNG = np.random.default_rng(SEED)
 
@@ -147,9 +148,6 @@ def check_match(label, left, right, config):
     return int((wanted != reference.INVALID).sum())
 
 
-DEFAULT_UNIQUENESS, DEFAULT_TEXTURE = 10, 1
-
-
 def test_match():
     cases = valid = 0
     for window in range(5, 16, 2):
@@ -190,10 +188,7 @@ def test_median():
                                             pointer(scratch), SIZE(scratch.size)) == OK
                 while LIB.tsr_median_run(pointer(state), U16(int(RNG.integers(1, 7)))) != OK:
                     pass
-                assert np.array_equal(got, reference.median(before, 3, FILL_MIN)), (height, width, valid_rate, spread)
-
-
-FILL_MIN = 5
+                assert np.array_equal(got, reference.median(before, MEDIAN_VALID_MIN)), (height, width, valid_rate, spread)
 
 
 def test_quantise():

@@ -1,7 +1,7 @@
 /*
  * Stereo matching of a rectified pair by the sum of absolute differences.
  *
- *   P(x,y)   = clip(x-Sobel / 4) + cap, 0 .. 2 cap            docs/math.md, eq. (10)
+ *   P(x,y)   = clip(round(x-Sobel / 4)) + cap, 0 .. 2 cap     docs/math.md, eq. (10)
  *   A(x,y,d) = |P_left(x,y) - P_right(x - s - d, y)|          eq. (11)
  *   S(x,y,d) = sum of A over window x window                  eq. (12)
  *   d*       = the lowest d with the least S(x,y,d)           eq. (14)
@@ -44,7 +44,7 @@ struct tsr_match_config {
     uint16_t disparities;       /* D, searched disparities, 16 .. 128, a multiple of 8; default 32 */
     uint8_t window;             /* px, odd, 5 .. 15; default 9 */
     uint8_t prefilter_cap;      /* 1 .. 127 / window (2 cap window <= 255); default the largest */
-    uint8_t uniqueness_percent; /* 1 .. 100, or off; default 10 */
+    uint8_t uniqueness_percent; /* 1 .. 100, or off; default 15 */
     uint8_t texture_min;        /* least sum of |P_left - cap| over the window, in units of window px, 1 .. 127, or
                                    off; default 1 */
     uint8_t lr_tolerance_px;    /* 1 .. 127, or off; default 1 */
@@ -66,7 +66,7 @@ struct tsr_match {
 enum tsr_status tsr_match_check(const struct tsr_match_config *config, const char **field);
 
 /* Scratch bytes, from resolved values and from a configuration (0 if it does
- * not check): column sums, and a few rows. */
+ * not check): column sums, five rows of bytes, the sums of a pixel twice. */
 #define TSR_MATCH_SCRATCH_LEN(width, disparities)                                                                      \
     ((size_t)(width) * ((size_t)(disparities) + 5u) + 4u * (size_t)(disparities))
 size_t tsr_match_scratch_len(const struct tsr_match_config *config);
@@ -125,9 +125,11 @@ enum tsr_status tsr_match_start(struct tsr_match *match, const struct tsr_match_
 /*
  * Continue for at most rows rows of work, of tsr_match_rows_total() in all:
  *
- *   height      prefilter rows, each about 30 instructions per pixel
- *   window/2    warm-up rows, each about 5 per pixel and disparity
- *   height      matched rows, each about 50 per pixel and disparity (Cortex-M4)
+ *   height      prefilter rows, each about 52 instructions per pixel (both frames)
+ *   window/2    warm-up rows, each about 15 per pixel and disparity
+ *   height      matched rows, each about 48 per pixel and disparity
+ *
+ * (Cortex-M4, -O3, D = 32; larger D cost less per disparity).
  *
  * The result does not depend on how the rows are divided among calls. Matched
  * row y of the map is final as soon as it is done.

@@ -5,9 +5,9 @@
  *              among the 3x3 neighbours inside the map
  *
  * A pixel is valid afterwards if at least TSR_MEDIAN_VALID_MIN of its (up to
- * nine) neighbours, itself included, were valid before and it was valid itself,
- * or at least TSR_MEDIAN_FILL_MIN and it was not: specks vanish, pinholes close.
- * Of n values in ascending order the lower median is the one at (n - 1) / 2.
+ * nine) neighbours, itself included, were valid before: specks vanish, pinholes
+ * close. Of n values in ascending order the lower median is the one at
+ * (n - 1) / 2.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -21,8 +21,7 @@
 #include "tsr/base/image.h"
 #include "tsr/base/status.h"
 
-#define TSR_MEDIAN_VALID_MIN 3
-#define TSR_MEDIAN_FILL_MIN 5
+#define TSR_MEDIAN_VALID_MIN 4
 #define TSR_MEDIAN_SCRATCH_ALIGN 2
 
 /* Scratch bytes: two rows of the map before the median. */
@@ -57,8 +56,9 @@ enum tsr_status tsr_median_start(struct tsr_median *median, uint16_t width, uint
                                  size_t map_cap, uint8_t *scratch, size_t scratch_cap);
 
 /*
- * Continue for at most rows rows, each about 150 instructions per pixel. The
- * result does not depend on how the rows are divided among calls.
+ * Continue for at most rows rows, each about 210 instructions per pixel
+ * (Cortex-M4). The result does not depend on how the rows are divided among
+ * calls.
  *
  * Returns TSR_AGAIN while rows are left, TSR_OK when the map is complete (and
  * from then on, doing nothing); TSR_ERR_ARG for a null median or rows = 0.

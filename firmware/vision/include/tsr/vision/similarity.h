@@ -30,10 +30,11 @@
 struct tsr_similarity_config {
     uint16_t width;        /* px, 16 .. TSR_IMAGE_WIDTH_MAX; no default */
     uint16_t height;       /* px, 16 .. TSR_IMAGE_HEIGHT_MAX; no default */
-    uint8_t block_log2;    /* block side 2^k px, 2 .. 4; default 3 below a width of 256, else 4 */
+    uint8_t block_log2;    /* block side 2^k px, 2 .. 4; default 2 */
     uint8_t clip_q4;       /* |a - b| counts as at most this, px, UQ4.4, 1 .. 255; default 2 px */
-    uint16_t threshold_q8; /* of MSE_k, px^2, UQ8.8, 1 .. clip_q4^2; default 2 px^2 */
-    uint16_t min_blocks;   /* blocks above it that make a difference, >= 1; default 2 */
+    uint16_t threshold_q8; /* of MSE_k, px^2, UQ8.8, 1 .. clip_q4^2; default 3/4 clip^2 */
+    uint16_t min_blocks;   /* blocks above it that make a difference, >= 1; default those that cover 128 px, or
+                              width * height / 600 if that is more, at least 1 */
 };
 
 struct tsr_similarity_result {
@@ -75,8 +76,8 @@ enum tsr_status tsr_similarity_start(struct tsr_similarity *similarity, const st
 
 /*
  * Continue for at least one row of blocks and at most rows rows more than that,
- * about 12 instructions per pixel. The result does not depend on how the rows
- * are divided among calls.
+ * about 27 instructions per pixel (Cortex-M4). The result does not depend on
+ * how the rows are divided among calls.
  *
  * Returns TSR_AGAIN while rows are left, TSR_OK when both maps have been read
  * (and from then on, doing nothing); TSR_ERR_ARG for a null pointer or rows = 0.
