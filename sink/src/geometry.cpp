@@ -51,24 +51,25 @@ std::optional<Eigen::Vector3d> PairGeometry::point_site(double x_px, double y_px
 
 std::vector<CloudPoint> triangulate(const PairGeometry &geometry, const DecodedMap &map, const GrayImage *reference)
 {
-    const std::size_t width = map.info.width;
     if (reference != nullptr && reference->size() != ImageSize{map.info.width, map.info.height}) {
         throw std::invalid_argument("triangulate: the reference image has another size than the map");
     }
     std::vector<CloudPoint> points;
-    for (std::size_t i = 0; i < map.disparity_q4.size(); i++) {
-        if (map.disparity_q4[i] == TSR_DISPARITY_INVALID) {
-            continue;
+    std::size_t i = 0;
+    for (int y = 0; y < map.info.height; y++) {
+        for (int x = 0; x < map.info.width; x++, i++) {
+            if (map.disparity_q4[i] == TSR_DISPARITY_INVALID) {
+                continue;
+            }
+            const double disparity_px = static_cast<double>(map.disparity_q4[i]) / TSR_DISPARITY_ONE_Q4;
+            const auto p_site = geometry.point_site(x, y, disparity_px);
+            if (!p_site) {
+                continue;
+            }
+            const std::uint8_t gray = reference != nullptr ? reference->pixels[i] : kMidGray;
+            points.push_back({static_cast<float>(p_site->x()), static_cast<float>(p_site->y()),
+                              static_cast<float>(p_site->z()), gray, gray, gray});
         }
-        const double disparity_px = static_cast<double>(map.disparity_q4[i]) / TSR_DISPARITY_ONE_Q4;
-        const auto p_site =
-            geometry.point_site(static_cast<double>(i % width), static_cast<double>(i / width), disparity_px);
-        if (!p_site) {
-            continue;
-        }
-        const std::uint8_t gray = reference != nullptr ? reference->pixels[i] : kMidGray;
-        points.push_back({static_cast<float>(p_site->x()), static_cast<float>(p_site->y()),
-                          static_cast<float>(p_site->z()), gray, gray, gray});
     }
     return points;
 }

@@ -11,7 +11,10 @@ namespace
 {
 
 constexpr double kSquaresPerPx2 = TSR_DISPARITY_ONE_Q4 * TSR_DISPARITY_ONE_Q4;
-constexpr std::size_t kSmallWidth = 256;
+/* The node's defaults, tsr/vision/similarity.h. */
+constexpr std::size_t kBlockSide = 4;
+constexpr std::size_t kDifferentPixelsMin = 128;
+constexpr std::size_t kDifferentShare = 600; /* one pixel in so many */
 
 struct Sums {
     std::uint64_t both = 0;
@@ -43,6 +46,13 @@ Sums sum_rectangle(const DecodedMap &a, const DecodedMap &b, std::size_t x0, std
     return sums;
 }
 
+/* Blocks that cover the least area counted as a difference. */
+int default_blocks(std::size_t width, std::size_t height)
+{
+    const std::size_t pixels = std::max(kDifferentPixelsMin, width * height / kDifferentShare);
+    return static_cast<int>(std::max<std::size_t>(1, pixels / (kBlockSide * kBlockSide)));
+}
+
 } // namespace
 
 MapComparison compare_maps(const DecodedMap &a, const DecodedMap &b, const SiteThresholds &thresholds)
@@ -52,7 +62,7 @@ MapComparison compare_maps(const DecodedMap &a, const DecodedMap &b, const SiteT
     if (b.info.width != width || b.info.height != height) {
         throw std::invalid_argument("compare_maps: two sizes");
     }
-    const std::size_t side = width < kSmallWidth ? 8 : 16;
+    const std::size_t side = kBlockSide;
     const double clip_q4 = thresholds.similarity_clip_px * TSR_DISPARITY_ONE_Q4;
     const auto clip_square_q8 = static_cast<std::uint64_t>(clip_q4 * clip_q4);
     MapComparison result;
@@ -73,8 +83,9 @@ MapComparison compare_maps(const DecodedMap &a, const DecodedMap &b, const SiteT
     if (whole.either > 0) {
         result.overlap = static_cast<double>(whole.both) / static_cast<double>(whole.either);
     }
-    result.similar =
-        result.different_blocks < thresholds.similarity_blocks && result.overlap >= thresholds.similarity_overlap_min;
+    const int blocks_min =
+        thresholds.similarity_blocks > 0 ? thresholds.similarity_blocks : default_blocks(width, height);
+    result.similar = result.different_blocks < blocks_min && result.overlap >= thresholds.similarity_overlap_min;
     return result;
 }
 

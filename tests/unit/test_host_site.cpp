@@ -1,5 +1,5 @@
 /* site.toml: what is read, what is refused and with which words. SPDX-License-Identifier: Apache-2.0 */
-#include <functional>
+#include <cstdlib>
 
 #include <gtest/gtest.h>
 
@@ -223,6 +223,18 @@ TEST(HostSite, ChecksSitesBuiltInMemory)
     site = small_site();
     site.name = "two\nlines";
     EXPECT_REFUSED(check_site(site), "control character");
+}
+
+TEST(HostSite, TheDocumentedExampleIsOne)
+{
+    const char *source = std::getenv("TSR_SOURCE");
+    if (source == nullptr) {
+        GTEST_SKIP() << "TSR_SOURCE is not set";
+    }
+    const std::string text = test::read_all(std::filesystem::path(source) / "docs/units.md");
+    const std::size_t start = text.find("```toml\n") + 8;
+    ASSERT_LT(start, text.size());
+    EXPECT_EQ(refusal_of(text.substr(start, text.find("```", start) - start)), "");
 }
 
 TEST(HostSite, AnyBytesAreRefusedOrRead)

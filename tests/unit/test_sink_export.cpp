@@ -87,6 +87,10 @@ TEST_F(SinkExport, NumbersAddUp)
     EXPECT_EQ(json["maps"]["received"], 3);
     EXPECT_EQ(json["maps"]["kept"], 2);
     EXPECT_EQ(json["maps"]["dropped"], 1);
+    ASSERT_EQ(json["received"].size(), 3u);
+    EXPECT_EQ(json["received"][1]["counter"], 10);
+    EXPECT_EQ(json["received"][1]["kept"], false);
+    EXPECT_EQ(json["received"][2]["file"], "maps/00005-4000000000");
     EXPECT_EQ(json["nodes"].size(), site.nodes.size());
     EXPECT_EQ(json["nodes"][2]["id"], 3);
     EXPECT_EQ(json["nodes"][2]["maps_dropped"], 1);

@@ -235,9 +235,16 @@ void check_settings(const Site &site)
         refuse_site(site, 0, "radio.frame_loss", "is outside 0..1");
     }
     const SiteThresholds &limits = site.thresholds;
-    if (!(limits.similarity_px2 >= 0 &&
+    /* In sixteenths of a pixel the node's fields have 8 bits and 16 bits; 0 would mean its default. */
+    if (!(limits.similarity_clip_px >= 1.0 / 16 && limits.similarity_clip_px <= 255.0 / 16)) {
+        refuse_site(site, 0, "thresholds.similarity_clip_px", "is outside 1/16..15.9375");
+    }
+    if (!(limits.similarity_px2 >= 1.0 / 256 &&
           limits.similarity_px2 <= limits.similarity_clip_px * limits.similarity_clip_px)) {
-        refuse_site(site, 0, "thresholds.similarity_px2", "is outside 0..similarity_clip_px squared");
+        refuse_site(site, 0, "thresholds.similarity_px2", "is outside 1/256..similarity_clip_px squared");
+    }
+    if (limits.similarity_blocks < 0) {
+        refuse_site(site, 0, "thresholds.similarity_blocks", "is negative");
     }
 }
 

@@ -35,10 +35,10 @@ void read_radio(TomlFields &fields, SiteRadio &radio)
 
 void read_thresholds(TomlFields &fields, SiteThresholds &limits)
 {
-    limits.similarity_px2 = fields.number("similarity_px2", 0, 254, limits.similarity_px2);
+    limits.similarity_px2 = fields.number("similarity_px2", 1.0 / 256, 254, limits.similarity_px2);
     limits.similarity_clip_px = fields.number("similarity_clip_px", 0.0625, 15.9375, limits.similarity_clip_px);
     limits.similarity_blocks =
-        static_cast<int>(fields.integer("similarity_blocks", 1, 65535, limits.similarity_blocks));
+        static_cast<int>(fields.integer("similarity_blocks", 0, 65535, limits.similarity_blocks));
     limits.similarity_overlap_min = fields.number("similarity_overlap_min", 0, 1, limits.similarity_overlap_min);
     limits.change_deviation_min =
         static_cast<int>(fields.integer("change_deviation_min", 1, 127, limits.change_deviation_min));

@@ -250,14 +250,14 @@ void write_stage_site(const fs::path &file, std::uint64_t seed)
     site.radio.frame_loss = 0.02;
     site.nodes = {make_node(1, "gateway", Role::gateway, kNodeNone, {0, -18, 2}),
                   make_node(2, "relay", Role::relay, 1, {0, -8, 2.5}),
-                  make_node(3, "left bench", Role::lead, 2, {-0.75, 0, 1.2}),
-                  make_node(4, "left bench wing", Role::wing, 3, {-0.59, 0, 1.2}),
-                  make_node(5, "right bench", Role::binocular, 2, {0.75, 0, 1.2})};
+                  make_node(3, "left bench", Role::lead, 2, {-0.3, 0, 1.2}),
+                  make_node(4, "left bench wing", Role::wing, 3, {-0.14, 0, 1.2}),
+                  make_node(5, "right bench", Role::binocular, 2, {0.3, 0, 1.2})};
     site.nodes[2].frames = "left160";
     site.nodes[3].frames = "right160";
     site.nodes[4].frames = "left320";
     site.nodes[4].frames_right = "right320";
-    site.pairs = {make_pair("two boards", 3, 4, 160, -0.75), make_pair("binocular", 5, kNodeNone, 320, 0.75)};
+    site.pairs = {make_pair("two boards", 3, 4, 160, -0.3), make_pair("binocular", 5, kNodeNone, 320, 0.3)};
     check_site(site);
     write_site(file, site);
 }

@@ -1,8 +1,8 @@
 /*
  * From disparity to metric points.
  *
- *   Z = f B / (d + d0)                          docs/math.md, the depth equation
- *   X = (x - cx) Z / f,  Y = (y - cy) Z / f
+ *   Z = f B / (d + d0)                          docs/math.md, eq. (4)
+ *   X = (x - cx) Z / f,  Y = (y - cy) Z / f        eq. (5)
  *   p_site = R (X, Y, Z) + position
  *
  * (x, y) is a pixel's centre in the left, rectified view, x right, y down; f, d,

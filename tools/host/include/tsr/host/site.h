@@ -50,9 +50,9 @@ struct SiteRadio { /* the emulator's link budget */
 /* When is a frame a change, when are two maps the same scene (docs/math.md, eq. (6) to (9) and (20) to (22))?
  * The node and the sink apply the same rule to maps. */
 struct SiteThresholds {
-    double similarity_px2 = 2.0;         /* mean squared difference above which a block differs, 0 .. clip^2 */
+    double similarity_px2 = 3.0;         /* mean squared difference above which a block differs, 1/256 .. clip^2 */
     double similarity_clip_px = 2.0;     /* a difference counts as at most this, 1/16 .. 15.9375 */
-    int similarity_blocks = 2;           /* differing blocks that make two maps differ, >= 1 */
+    int similarity_blocks = 0;           /* differing blocks that make two maps differ; 0 = by the map's size */
     double similarity_overlap_min = 0.5; /* sink: below this part of pixels valid in both, of those in either: differ */
     int change_deviation_min = 6;        /* gray levels, 1 .. 127 */
     int change_cells_min = 0;            /* changed cells that wake the pair; 0 = the node's default */
