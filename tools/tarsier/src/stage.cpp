@@ -27,6 +27,7 @@ constexpr int kFrames = 90;
 constexpr int kPeriodMs = 1000;
 constexpr int kLightFrame = 30;
 constexpr int kObjectFrame = 60;
+constexpr double kExposure = 0.8; /* leaves head room for the brighter light */
 constexpr double kLightGain = 1.3;
 constexpr double kNoiseSigma = 1.5; /* gray levels */
 
@@ -126,7 +127,7 @@ GrayImage expose(const Picture &picture, Random &random)
     GrayImage image{picture.width, picture.height, {}};
     image.pixels.reserve(picture.pixels.size());
     for (const float value : picture.pixels) {
-        const double noisy = static_cast<double>(value) + kNoiseSigma * random.normal();
+        const double noisy = kExposure * static_cast<double>(value) + kNoiseSigma * random.normal();
         image.pixels.push_back(static_cast<std::uint8_t>(std::clamp(std::lround(noisy), 0L, 255L)));
     }
     return image;
