@@ -79,16 +79,20 @@ static bool is_valid_row(const struct tsr_map_info *info, const uint16_t *row)
 static void labels_from_row(const struct tsr_map_info *info, uint16_t *labels, const uint16_t *row)
 {
     for (unsigned x = 0; x < info->width; x++) {
-        labels[x] = row[x] == TSR_DISPARITY_INVALID ? TSR_LABEL_INVALID
-                                                    : (uint16_t)(1u + ((unsigned)row[x] >> info->step_log2));
+        labels[x] = TSR_LABEL_INVALID;
+        if (row[x] != TSR_DISPARITY_INVALID) {
+            labels[x] = (uint16_t)(1u + ((unsigned)row[x] >> info->step_log2));
+        }
     }
 }
 
 static void row_from_labels(const struct tsr_map_info *info, uint16_t *row, const uint16_t *labels)
 {
     for (unsigned x = 0; x < info->width; x++) {
-        row[x] =
-            labels[x] == TSR_LABEL_INVALID ? TSR_DISPARITY_INVALID : (uint16_t)((labels[x] - 1u) << info->step_log2);
+        row[x] = TSR_DISPARITY_INVALID;
+        if (labels[x] != TSR_LABEL_INVALID) {
+            row[x] = (uint16_t)((labels[x] - 1u) << info->step_log2);
+        }
     }
 }
 

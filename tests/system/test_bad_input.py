@@ -114,8 +114,8 @@ def geometry(folder, scene):
     """A right camera turned by 10 degrees, and one ahead of the left one: neither pair can be rectified."""
     turned = "[pair.right]\nposition_m = [{x}, {y}, 1.2]\nrotation = {r}\n"
     upright = "[1, 0, 0, 0, 0, 1, 0, -1, 0]"
-    cases = (("converging cameras", turned.format(x=-0.59, y=0, r="[0.985, 0.1736, 0, 0, 0, 1, 0.1736, -0.985, 0]")),
-             ("epipole in the image", turned.format(x=-0.75, y=0.16, r=upright)))
+    cases = (("converging cameras", turned.format(x=-0.14, y=0, r="[0.985, 0.1736, 0, 0, 0, 1, 0.1736, -0.985, 0]")),
+             ("epipole in the image", turned.format(x=-0.3, y=0.16, r=upright)))
     text = (scene / "site.toml").read_text()
     at = text.index("[[pair]]", text.index("[[pair]]") + 1)
     for name, right in cases:

@@ -35,23 +35,23 @@ TEST(SinkSelect, EqualMapsAreSimilar)
 TEST(SinkSelect, MseIsOfPixelsValidInBoth)
 {
     const DecodedMap a = test::flat_map(kPair, 64);
-    DecodedMap b = test::flat_map(kPair, 64 + 24); /* 1.5 px: 2.25 px^2 */
+    DecodedMap b = test::flat_map(kPair, 64 + 28); /* 1.75 px: 3.0625 px^2 */
     paint(b, 0, 0, 16, TSR_DISPARITY_INVALID);
     const MapComparison result = compare_maps(a, b, {});
-    EXPECT_DOUBLE_EQ(result.mse_px2, 2.25);
+    EXPECT_DOUBLE_EQ(result.mse_px2, 3.0625);
     EXPECT_DOUBLE_EQ(result.overlap, 1.0 - 256.0 / (64 * 48));
-    EXPECT_EQ(result.different_blocks, 8 * 6 - 4);
+    EXPECT_EQ(result.different_blocks, 16 * 12 - 16);
     EXPECT_FALSE(result.similar);
 }
 
-TEST(SinkSelect, AnObjectOfTwoBlocksIsADifferenceAndOneOfOneIsNot)
+TEST(SinkSelect, AnObjectOfEightBlocksIsADifferenceAndOneOfFourIsNot)
 {
     const DecodedMap a = test::flat_map(kPair, 32);
     DecodedMap b = a;
     paint(b, 8, 8, 8, 128);
     EXPECT_TRUE(compare_maps(a, b, {}).similar);
     paint(b, 24, 8, 8, 128);
-    EXPECT_EQ(compare_maps(a, b, {}).different_blocks, 2);
+    EXPECT_EQ(compare_maps(a, b, {}).different_blocks, 8);
     EXPECT_FALSE(compare_maps(a, b, {}).similar);
     EXPECT_LT(compare_maps(a, b, {}).mse_px2, 2.0); /* which the whole map's MSE would not see */
 }
