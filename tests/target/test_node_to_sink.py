@@ -1,0 +1,45 @@
+"""The whole chain with the firmware on the Cortex-M4: a lead, its wing and a gateway in QEMU, UART0 to a real sink.
+
+The lead watches, wakes its wing, gets its view, matches, codes, seals and sends; the sink must have committed a map
+that equals, pixel for pixel, what the host computes from the same two pictures.
+
+SPDX-License-Identifier: Apache-2.0
+"""
+import pathlib
+import struct
+import tempfile
+
+import board
+import pictures
+import site_run
+
+SHAPE = pictures.SIZES["160x120"]
+INVALID_Q4 = 0xffff
+
+
+def expected_map(work):
+    """What the host makes of the same pictures, through the codec and back."""
+    host = board.build_host_workbench(work)
+    left, right = (pictures.read_pgm(path)[2] for path in site_run.views(work / "scene"))
+    folder = pictures.write_case(work / "host", bytes(len(left)), left, right)
+    board.run([host, *SHAPE], cwd=folder)
+    data = (folder / "map_decoded.out").read_bytes()
+    return [float("inf") if value == INVALID_Q4 else value / 16 for value in struct.unpack(f"<{len(data) // 2}H", data)]
+
+
+def test():
+    with tempfile.TemporaryDirectory(prefix="tsr") as folder:
+        work = pathlib.Path(folder)
+        counters, maps = site_run.run(work)
+        print(counters)
+        assert len(maps) == 1, f"the sink has {len(maps)} maps"
+        assert counters["maps_sent"] == 1
+        found, expected = site_run.read_pfm(maps[0]), expected_map(work)
+        different = sum(a != b for a, b in zip(found, expected))
+        valid = sum(value != float("inf") for value in expected)
+        assert len(found) == len(expected) and different == 0, f"{different} pixels differ"
+        assert valid > len(expected) // 2, "too few pixels have a disparity: the pictures test nothing"
+        print(f"one map of {len(found)} pixels, {valid} with a disparity, equal")
+
+
+board.main("target/test_node_to_sink", test)

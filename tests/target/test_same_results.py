@@ -1,0 +1,42 @@
+"""The Cortex-M4 and the host give the same bytes: change, matching, median, similarity, both codecs, sealing.
+
+The workbench runs on both over the same pictures: the demo's Aloe frames at 160x120 and 320x240, and with TSR_DATA the
+pairs in that folder. On the host it is built with address and undefined-behaviour sanitizers.
+
+SPDX-License-Identifier: Apache-2.0
+"""
+import pathlib
+import tempfile
+
+import board
+import pictures
+
+RESULTS = ["change_result", "change_state", "view_coded", "view_decoded", "reference_coded", "reference_decoded",
+           "match", "median", "quantise", "similarity", "map_coded", "map_decoded", "message", "frames"]
+
+
+def results(folder):
+    found = {path.stem: path.read_bytes() for path in pathlib.Path(folder).glob("*.out")}
+    for path in pathlib.Path(folder).glob("*.out"):
+        path.unlink()
+    return found
+
+
+def test():
+    image = board.build("tarsier-workbench") / "tarsier-workbench.elf"
+    with tempfile.TemporaryDirectory() as work:
+        host = board.build_host_workbench(work)
+        for name, folder, shape in pictures.aloe_cases(work) + pictures.data_cases(work):
+            board.run([host, *shape], cwd=folder)
+            expected = results(folder)
+            code, text = board.run_image(image, shape, folder)
+            assert code == 0, f"{name}: workbench ended with {code}: {text}"
+            found = results(folder)
+            assert sorted(expected) == sorted(found) == sorted(RESULTS), f"{name}: {sorted(found)}"
+            different = [result for result in RESULTS if expected[result] != found[result]]
+            assert not different, f"{name}: the board differs from the host in {', '.join(different)}"
+            assert any(expected["match"]) and expected["change_result"][0] == 1, f"{name}: the pictures test nothing"
+            print(f"{name}: {len(RESULTS)} results equal, {sum(map(len, found.values()))} bytes")
+
+
+board.main("target/test_same_results", test)
