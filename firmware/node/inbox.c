@@ -56,10 +56,11 @@ static void take_short(struct tsr_node *node, const struct tsr_fragment *fragmen
     const uint8_t *body = message + TSR_MESSAGE_HEADER_LEN;
     struct tsr_body_status status;
     struct tsr_body_capture wake;
-    if (header->kind == TSR_MESSAGE_STATUS && tsr_body_read_status(body, body_len, &status) == TSR_OK) {
+    if (header->kind == TSR_MESSAGE_STATUS && header->origin == node->sender.destination &&
+        tsr_body_read_status(body, body_len, &status) == TSR_OK) { /* nobody else can accept what it sends */
         tsr_sender_on_status(&node->sender, &status, now_us);
     } else if (header->kind == TSR_MESSAGE_WAKE && node->config.role == TSR_ROLE_WING &&
-               tsr_body_read_capture(body, body_len, &wake) == TSR_OK) {
+               header->key_use == TSR_KEY_PAIR && tsr_body_read_capture(body, body_len, &wake) == TSR_OK) {
         tsr_node_on_wake(node, &wake, frame_time_us);
     } else {
         node->counters.dropped_foreign++;
@@ -83,8 +84,10 @@ static void take_piece(struct tsr_node *node, const struct tsr_fragment *fragmen
         return; /* complete and being opened: the answer follows */
     }
     if (node->phase != TSR_PHASE_RECEIVING) {
+        /* The wing may be done with its view before this camera is: no answer, and it polls again. */
+        bool early = node->phase == TSR_PHASE_WAKING || node->phase == TSR_PHASE_CAPTURING;
         node->counters.dropped_foreign++;
-        if (fragment->poll) {
+        if (fragment->poll && !early) {
             tsr_node_answer(node, fragment->message_id, TSR_DELIVERY_REFUSED);
         }
         return;
@@ -100,7 +103,7 @@ static void take_piece(struct tsr_node *node, const struct tsr_fragment *fragmen
     } else if (node->inbox.received != received) {
         node->phase_timer_us = now_us + TSR_SENDER_WAIT_MAX_US;
     }
-    node->inbox_ready = status == TSR_OK;
+    node->inbox_ready = tsr_reassembly_complete(&node->inbox);
     if (fragment->poll && status == TSR_AGAIN) {
         tsr_node_answer(node, fragment->message_id, TSR_DELIVERY_MISSING);
     }

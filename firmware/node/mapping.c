@@ -91,7 +91,7 @@ static struct work decode_view(struct tsr_node *node)
     if (node->row == right.height) {
         enter(node, TSR_PHASE_REFERENCE);
     }
-    return work_of(TSR_WORK_GRAY_DECODE, (size_t)rows * right.width);
+    return work_of(TSR_WORK_VIEW_DECODE, (size_t)rows * right.width);
 }
 
 static void start_matching(struct tsr_node *node)
@@ -133,7 +133,7 @@ static struct work code_reference(struct tsr_node *node)
         node->reference_len = len;
         start_matching(node);
     }
-    return work_of(TSR_WORK_GRAY_ENCODE, (size_t)rows * view.width);
+    return work_of(TSR_WORK_REFERENCE_ENCODE, (size_t)rows * view.width);
 }
 
 static struct work match(struct tsr_node *node)

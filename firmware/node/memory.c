@@ -20,6 +20,30 @@ bool tsr_node_watches(enum tsr_role role)
     return role == TSR_ROLE_LEAD || role == TSR_ROLE_BINOCULAR;
 }
 
+/* The MAC keeps the frame counter of so many neighbours, and hears no more. */
+static bool too_many_neighbours(const struct tsr_routes *routes)
+{
+    unsigned neighbours = routes->parent == TSR_ADDRESS_NONE ? 0 : 1;
+    for (unsigned i = 0; i < routes->descendant_count; i++) {
+        bool first = routes->descendants[i].next_hop != routes->parent;
+        for (unsigned j = 0; j < i && first; j++) {
+            first = routes->descendants[j].next_hop != routes->descendants[i].next_hop;
+        }
+        neighbours += first ? 1 : 0;
+    }
+    return neighbours > TSR_MAC_NEIGHBOURS_MAX;
+}
+
+/* Lead and wing hear each other directly: one frame's end is their clock. */
+static bool bad_partner(const struct tsr_node_config *config)
+{
+    if (config->role != TSR_ROLE_LEAD && config->role != TSR_ROLE_WING) {
+        return config->partner != TSR_ADDRESS_NONE;
+    }
+    return config->partner < TSR_ADDRESS_NODE_MIN || config->partner > TSR_ADDRESS_NODE_MAX ||
+           config->partner == config->address || tsr_route_next(&config->routes, config->partner) != config->partner;
+}
+
 static const char *bad_network_field(const struct tsr_node_config *config)
 {
     if (config->role < TSR_ROLE_GATEWAY || config->role > TSR_ROLE_BINOCULAR) {
@@ -34,19 +58,16 @@ static const char *bad_network_field(const struct tsr_node_config *config)
     if ((config->role == TSR_ROLE_GATEWAY) != (config->routes.parent == TSR_ADDRESS_NONE)) {
         return "routes.parent";
     }
-    if (config->routes.descendant_count > 0 && config->routes.descendants == NULL) {
+    if (config->routes.descendant_count > 0 &&
+        (config->routes.descendants == NULL || too_many_neighbours(&config->routes))) {
         return "routes.descendants";
     }
-    return NULL;
+    return bad_partner(config) ? "partner" : NULL;
 }
 
 static const char *bad_camera_field(const struct tsr_node_config *config)
 {
     const char *field = NULL;
-    if ((config->role == TSR_ROLE_LEAD || config->role == TSR_ROLE_WING) &&
-        (config->partner < TSR_ADDRESS_NODE_MIN || config->partner > TSR_ADDRESS_NODE_MAX)) {
-        return "partner";
-    }
     if (config->watch_period_us == 0 && tsr_node_watches(config->role)) {
         return "watch_period_us";
     }

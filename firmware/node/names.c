@@ -21,7 +21,8 @@ const char *tsr_phase_name(enum tsr_node_phase phase)
 
 const char *tsr_work_name(enum tsr_work_kind kind)
 {
-    static const char *const names[TSR_WORK_COUNT] = {"none",       "change",      "match",       "median", "compare",
-                                                      "map_encode", "gray_encode", "gray_decode", "seal",   "copy"};
+    static const char *const names[TSR_WORK_COUNT] = {"none",        "change",     "match",       "median",
+                                                      "compare",     "map_encode", "view_encode", "reference_encode",
+                                                      "view_decode", "seal",       "copy"};
     return (unsigned)kind < TSR_WORK_COUNT ? names[kind] : "unknown";
 }

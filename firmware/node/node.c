@@ -9,6 +9,9 @@
 
 static void place_regions(struct tsr_node *node, const struct tsr_memory_plan *plan, uint8_t *arena)
 {
+    if (plan->total == 0) {
+        return; /* arena may be null */
+    }
     node->pair = arena + plan->offset[TSR_REGION_PAIR];
     node->message = arena + plan->offset[TSR_REGION_MESSAGE];
     node->message_cap = plan->len[TSR_REGION_MESSAGE];
@@ -145,6 +148,9 @@ static uint64_t next_wake(const struct tsr_node *node)
     }
     if (node->phase == TSR_PHASE_RECEIVING) {
         wake_us = earlier(wake_us, node->phase_timer_us);
+    }
+    if (node->wake_due && node->phase == TSR_PHASE_IDLE) {
+        wake_us = earlier(wake_us, node->capture_at_us - TSR_CAPTURE_ORDER_US);
     }
     return wake_us;
 }

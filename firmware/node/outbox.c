@@ -15,14 +15,18 @@ static const struct tsr_cipher *cipher_for(const struct tsr_node *node, uint16_t
     return pair ? &node->pair_cipher : &node->node_cipher;
 }
 
-static struct tsr_message_header next_header(struct tsr_node *node, enum tsr_message_kind kind, uint16_t destination)
+/* A header with a fresh counter; TSR_ERR_ARG when they are used up. */
+static enum tsr_status make_header(struct tsr_node *node, enum tsr_message_kind kind, uint16_t destination,
+                                   struct tsr_message_header *header)
 {
-    struct tsr_message_header header = {0};
-    header.kind = (uint8_t)kind;
-    header.origin = node->config.address;
-    header.destination = destination;
-    header.counter = ++node->message_counter;
-    return header;
+    if (node->message_counter == UINT32_MAX) {
+        return TSR_ERR_ARG;
+    }
+    header->kind = (uint8_t)kind;
+    header->origin = node->config.address;
+    header->destination = destination;
+    header->counter = ++node->message_counter;
+    return TSR_OK;
 }
 
 enum tsr_status tsr_node_send_short(struct tsr_node *node, enum tsr_message_kind kind, uint16_t destination,
@@ -35,11 +39,14 @@ enum tsr_status tsr_node_send_short(struct tsr_node *node, enum tsr_message_kind
     if (body_len + TSR_MESSAGE_OVERHEAD_LEN > sizeof message) {
         return TSR_ERR_SIZE;
     }
-    struct tsr_message_header header = next_header(node, kind, destination);
+    struct tsr_message_header header;
     const struct tsr_cipher *cipher = cipher_for(node, destination, &header.key_use);
     memcpy(message + TSR_MESSAGE_HEADER_LEN, body, body_len);
     size_t message_len = 0;
-    enum tsr_status status = tsr_message_seal(&header, cipher, message, sizeof message, body_len, &message_len);
+    enum tsr_status status = make_header(node, kind, destination, &header);
+    if (status == TSR_OK) {
+        status = tsr_message_seal(&header, cipher, message, sizeof message, body_len, &message_len);
+    }
     if (status != TSR_OK) {
         return status;
     }
@@ -71,17 +78,22 @@ void tsr_node_answer(struct tsr_node *node, uint16_t message_id, enum tsr_delive
     status.message_id = message_id;
     uint8_t body[TSR_BODY_STATUS_MAX];
     size_t body_len = 0;
-    if (tsr_body_write_status(&status, body, sizeof body, &body_len) == TSR_OK) {
-        /* Lost answers are asked for again. */
-        (void)tsr_node_send_short(node, TSR_MESSAGE_STATUS, node->config.partner, body, body_len, TOKEN_NONE);
+    if (tsr_body_write_status(&status, body, sizeof body, &body_len) != TSR_OK ||
+        tsr_node_send_short(node, TSR_MESSAGE_STATUS, node->config.partner, body, body_len, TOKEN_NONE) != TSR_OK) {
+        node->counters.dropped_queue++; /* it is asked for again */
     }
 }
 
 enum tsr_status tsr_node_start_sealing(struct tsr_node *node, enum tsr_message_kind kind, uint16_t destination)
 {
-    struct tsr_message_header header = next_header(node, kind, destination);
+    struct tsr_message_header header;
     const struct tsr_cipher *cipher = cipher_for(node, destination, &header.key_use);
+    enum tsr_status status = make_header(node, kind, destination, &header);
+    if (status != TSR_OK) {
+        return status;
+    }
     node->sealed = 0;
+    node->sealing_counter = header.counter; /* short messages take counters meanwhile */
     return tsr_message_seal_start(&node->ccm, &header, cipher, node->message, node->message_cap, node->body_len);
 }
 
@@ -101,7 +113,7 @@ struct work tsr_node_continue_sealing(struct tsr_node *node, uint16_t destinatio
     }
     (void)tsr_ccm_seal(&node->ccm, body + node->body_len);
     node->message_len = node->body_len + TSR_MESSAGE_OVERHEAD_LEN;
-    (void)tsr_sender_start(&node->sender, node->message, node->message_len, destination, node->message_counter, now_us);
+    (void)tsr_sender_start(&node->sender, node->message, node->message_len, destination, node->sealing_counter, now_us);
     *done = true;
     return no_work();
 }

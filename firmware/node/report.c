@@ -19,16 +19,24 @@ static enum tsr_status start_encoding(struct tsr_node *node, struct tsr_map_enco
                                 (node->scratch_cap - sizeof *encoder) / sizeof *rows);
 }
 
-static void finish_encoding(struct tsr_node *node, size_t map_len)
+static void lose_map(struct tsr_node *node, uint64_t now_us)
+{
+    node->counters.maps_lost++;
+    node->recapture = true;
+    tsr_node_rest(node, now_us);
+}
+
+static enum tsr_status finish_encoding(struct tsr_node *node, size_t map_len)
 {
     tsr_body_write_map_header(node->capture_time_us, node->capture_id, node->reference_len,
                               node->message + TSR_MESSAGE_HEADER_LEN);
     node->body_len = TSR_BODY_MAP_HEADER_LEN + node->reference_len + map_len;
-    (void)tsr_node_start_sealing(node, TSR_MESSAGE_MAP, TSR_ADDRESS_SINK);
+    enum tsr_status status = tsr_node_start_sealing(node, TSR_MESSAGE_MAP, TSR_ADDRESS_SINK);
     enter(node, TSR_PHASE_SEALING);
+    return status;
 }
 
-static struct work encode_map(struct tsr_node *node)
+static struct work encode_map(struct tsr_node *node, uint64_t now_us)
 {
     struct tsr_map_encoder *encoder = (struct tsr_map_encoder *)(void *)node->scratch;
     size_t width = node->config.match.width;
@@ -44,12 +52,15 @@ static struct work encode_map(struct tsr_node *node)
         status = tsr_map_encode_finish(encoder, &map_len);
     }
     if (status == TSR_OK) {
-        finish_encoding(node, map_len);
-    } else if (status != TSR_AGAIN && node->reference_len > 0) {
-        /* No room for both: the map is what counts. Alone it always fits. */
+        status = finish_encoding(node, map_len);
+    }
+    if (status < TSR_OK && node->reference_len > 0) {
+        /* No room for both: the map is what counts. */
         node->counters.references_omitted++;
         node->reference_len = 0;
         enter(node, TSR_PHASE_ENCODING);
+    } else if (status < TSR_OK) { /* noise that outgrows the longest message, or no counter left */
+        lose_map(node, now_us);
     }
     return work_of(TSR_WORK_MAP_ENCODE, rows * width);
 }
@@ -71,9 +82,7 @@ static struct work await_commit(struct tsr_node *node, uint64_t now_us)
         return no_work();
     }
     if (tsr_sender_result(&node->sender) != TSR_OK) {
-        node->counters.maps_lost++;
-        node->recapture = true;
-        tsr_node_rest(node, now_us);
+        lose_map(node, now_us);
         return no_work();
     }
     size_t len = sizeof(uint16_t) * node->config.match.width * node->config.match.height;
@@ -87,7 +96,7 @@ static struct work await_commit(struct tsr_node *node, uint64_t now_us)
 struct work tsr_node_report_map(struct tsr_node *node, uint64_t now_us)
 {
     switch (node->phase) {
-    case TSR_PHASE_ENCODING: return encode_map(node);
+    case TSR_PHASE_ENCODING: return encode_map(node, now_us);
     case TSR_PHASE_SEALING: return seal_map(node, now_us);
     case TSR_PHASE_SENDING: return await_commit(node, now_us);
     default: return no_work();

@@ -76,8 +76,11 @@ static void take_answer(struct tsr_node *node, const struct tsr_link_frame *fram
             node->counters.port_rejected++;
             return;
         }
-        if (tsr_node_forward(node, &fragment) == TSR_OK) {
+        enum tsr_status status = tsr_node_forward(node, &fragment);
+        if (status == TSR_OK) {
             node->counters.downlinks++;
+        } else if (status != TSR_ERR_NOROUTE) { /* that one is counted */
+            node->counters.dropped_queue++;
         }
     }
 }

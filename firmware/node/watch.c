@@ -79,9 +79,10 @@ void tsr_node_on_wake_confirm(struct tsr_node *node, const struct tsr_mac_confir
     if (node->phase != TSR_PHASE_WAKING) {
         return;
     }
-    if (confirm->status != TSR_OK) {
+    uint64_t capture_at_us = confirm->time_us + TSR_CAPTURE_DELAY_US;
+    if (confirm->status != TSR_OK || now_us > capture_at_us + TSR_CAPTURE_ORDER_US) {
         send_wake(node, now_us);
-    } else if (tsr_node_start_capture(node, false, confirm->time_us + TSR_CAPTURE_DELAY_US) == TSR_OK) {
+    } else if (tsr_node_start_capture(node, false, capture_at_us) == TSR_OK) {
         enter(node, TSR_PHASE_CAPTURING);
     } else {
         tsr_node_abandon_capture(node, now_us);

@@ -15,23 +15,49 @@ void tsr_node_on_wake(struct tsr_node *node, const struct tsr_body_capture *wake
     node->wake_due = true;
 }
 
-/* Drop what is under way as soon as the camera has given its buffer back. */
-static void obey_wake(struct tsr_node *node)
+static void count_view(struct tsr_node *node, bool accepted)
+{
+    if (accepted) {
+        node->counters.views_sent++;
+    } else {
+        node->counters.views_lost++;
+    }
+}
+
+/* A new WAKE makes an older view useless. */
+static void drop_view(struct tsr_node *node)
+{
+    if (node->phase == TSR_PHASE_SENDING && tsr_sender_is_idle(&node->sender)) {
+        count_view(node, tsr_sender_result(&node->sender) == TSR_OK);
+    } else if (node->phase == TSR_PHASE_SENDING) {
+        tsr_sender_abort(&node->sender);
+        count_view(node, false);
+    } else if (node->phase == TSR_PHASE_ENCODING || node->phase == TSR_PHASE_SEALING) {
+        count_view(node, false);
+    }
+    node->left.pending = false;
+    enter(node, TSR_PHASE_IDLE);
+}
+
+/* Drop what is under way as soon as the camera has given its buffer back, and
+ * order the capture only shortly before its instant: until then the lead may
+ * wake again for a later one. */
+static void obey_wake(struct tsr_node *node, uint64_t now_us)
 {
     bool camera_free = !node->left.pending || __atomic_load_n(&node->left.done, __ATOMIC_ACQUIRE);
     if (!node->wake_due || !camera_free) {
         return;
     }
-    node->wake_due = false;
-    if (node->phase == TSR_PHASE_SENDING) {
-        tsr_sender_abort(&node->sender);
-        node->counters.views_lost++;
+    drop_view(node);
+    if (now_us + TSR_CAPTURE_ORDER_US < node->capture_at_us) {
+        return;
     }
-    if (tsr_node_start_capture(node, false, node->capture_at_us) == TSR_OK) {
+    node->wake_due = false;
+    if (now_us <= node->capture_at_us + TSR_CAPTURE_ORDER_US &&
+        tsr_node_start_capture(node, false, node->capture_at_us) == TSR_OK) {
         enter(node, TSR_PHASE_CAPTURING);
     } else {
         node->counters.captures_failed++;
-        enter(node, TSR_PHASE_IDLE);
     }
 }
 
@@ -73,13 +99,15 @@ static struct work encode_view(struct tsr_node *node)
     }
     if (status == TSR_OK) {
         node->body_len = TSR_BODY_VIEW_HEADER_LEN + len;
-        (void)tsr_node_start_sealing(node, TSR_MESSAGE_VIEW, node->config.partner);
+        status = tsr_node_start_sealing(node, TSR_MESSAGE_VIEW, node->config.partner);
+    }
+    if (status == TSR_OK) {
         enter(node, TSR_PHASE_SEALING);
     } else if (status != TSR_AGAIN) {
-        node->counters.views_lost++;
+        count_view(node, false);
         enter(node, TSR_PHASE_IDLE);
     }
-    return work_of(TSR_WORK_GRAY_ENCODE, (size_t)rows * view.width);
+    return work_of(TSR_WORK_VIEW_ENCODE, (size_t)rows * view.width);
 }
 
 static struct work seal_view(struct tsr_node *node, uint64_t now_us)
@@ -96,11 +124,7 @@ static struct work seal_view(struct tsr_node *node, uint64_t now_us)
 static struct work await_acceptance(struct tsr_node *node)
 {
     if (tsr_sender_is_idle(&node->sender)) {
-        if (tsr_sender_result(&node->sender) == TSR_OK) {
-            node->counters.views_sent++;
-        } else {
-            node->counters.views_lost++;
-        }
+        count_view(node, tsr_sender_result(&node->sender) == TSR_OK);
         enter(node, TSR_PHASE_IDLE);
     }
     return no_work();
@@ -108,7 +132,7 @@ static struct work await_acceptance(struct tsr_node *node)
 
 struct work tsr_node_serve_lead(struct tsr_node *node, uint64_t now_us)
 {
-    obey_wake(node);
+    obey_wake(node, now_us);
     switch (node->phase) {
     case TSR_PHASE_CAPTURING: return await_capture(node);
     case TSR_PHASE_ENCODING: return encode_view(node);

@@ -22,8 +22,9 @@ KINDS = {
     "median": (("median",), "pixel"),
     "compare": (("quantise", "similarity"), "pixel"),
     "map_encode": (("map_encode",), "pixel"),
-    "gray_encode": (("gray_encode_view", "gray_encode_reference"), "pixel"),
-    "gray_decode": (("gray_decode_view",), "pixel"),
+    "view_encode": (("gray_encode_view",), "pixel"),
+    "reference_encode": (("gray_encode_reference",), "pixel"),
+    "view_decode": (("gray_decode_view",), "pixel"),
     "seal": (("seal_message", "open_message", "seal_frame", "open_frame"), "byte"),
     "copy": (("copy",), "byte"),
 }

@@ -73,15 +73,16 @@ enum tsr_node_phase {
 /* What a step did, for the table of measured instruction counts. */
 enum tsr_work_kind {
     TSR_WORK_NONE,
-    TSR_WORK_CHANGE,      /* units: pixels of the full frame */
-    TSR_WORK_MATCH,       /* rows of matcher work x width x disparities */
-    TSR_WORK_MEDIAN,      /* pixels */
-    TSR_WORK_COMPARE,     /* pixels, quantised and compared */
-    TSR_WORK_MAP_ENCODE,  /* pixels */
-    TSR_WORK_GRAY_ENCODE, /* pixels */
-    TSR_WORK_GRAY_DECODE, /* pixels */
-    TSR_WORK_SEAL,        /* bytes sealed or opened, messages and frames */
-    TSR_WORK_COPY,        /* bytes */
+    TSR_WORK_CHANGE,           /* units: pixels of the full frame */
+    TSR_WORK_MATCH,            /* rows of matcher work x width x disparities */
+    TSR_WORK_MEDIAN,           /* pixels */
+    TSR_WORK_COMPARE,          /* pixels, quantised and compared */
+    TSR_WORK_MAP_ENCODE,       /* pixels */
+    TSR_WORK_VIEW_ENCODE,      /* pixels, lossless */
+    TSR_WORK_REFERENCE_ENCODE, /* pixels, near-lossless */
+    TSR_WORK_VIEW_DECODE,      /* pixels */
+    TSR_WORK_SEAL,             /* bytes sealed or opened, messages and frames */
+    TSR_WORK_COPY,             /* bytes */
     TSR_WORK_COUNT
 };
 
@@ -89,7 +90,7 @@ struct tsr_node_config {
     enum tsr_role role;
     uint16_t pan_id;
     uint16_t address;
-    uint16_t partner; /* lead: its wing; wing: its lead; otherwise TSR_ADDRESS_NONE */
+    uint16_t partner; /* lead: its wing, wing: its lead, one hop away; otherwise TSR_ADDRESS_NONE */
     uint8_t channel;
     struct tsr_routes routes;
     uint8_t link_key[TSR_AES_KEY_LEN]; /* every node of the site */
@@ -142,7 +143,8 @@ struct tsr_node_counters {
     uint32_t dropped_foreign;    /* for this node, but nothing it expects */
     uint32_t dropped_auth;       /* messages whose tag does not verify */
     uint32_t dropped_replay;
-    uint32_t uplinks; /* gateway: fragments given to the sink */
+    uint32_t dropped_queue; /* fragments from the sink and answers to the wing that found no room in the MAC */
+    uint32_t uplinks;       /* gateway: fragments given to the sink */
     uint32_t uplink_repeats;
     uint32_t downlinks;
     uint32_t port_rejected; /* gateway: link frames that do not follow their format */

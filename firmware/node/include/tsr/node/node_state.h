@@ -45,7 +45,8 @@ struct tsr_node {
     struct tsr_cipher link_cipher;
     struct tsr_cipher node_cipher;
     struct tsr_cipher pair_cipher;
-    uint32_t message_counter;
+    uint32_t message_counter; /* last used */
+    uint32_t sealing_counter; /* of the message in the message region */
     uint32_t sink_counter;    /* last accepted from the sink */
     uint32_t partner_counter; /* last accepted from the partner */
     bool sink_heard;
