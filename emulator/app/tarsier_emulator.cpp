@@ -13,13 +13,13 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <unistd.h>
 
 #include "tsr/emulator/pair_site.h"
 #include "tsr/emulator/report.h"
 #include "tsr/emulator/simulation.h"
 #include "tsr/host/atomic_file.h"
+#include "tsr/host/command_line.h"
 #include "tsr/host/input_error.h"
 #include "tsr/host/keys.h"
 #include "tsr/host/recorded_frames.h"
@@ -39,7 +39,6 @@ struct Options {
     bool quiet = false;
 };
 
-/* Throws CLI::ParseError. */
 void declare(CLI::App &app, Options &options)
 {
     app.add_option("SITE", options.site, "site.toml");
@@ -215,18 +214,9 @@ int run(const Options &options)
 
 int main(int argc, char **argv)
 {
-    return tsr::run_program("tarsier-emulator", [&] {
-        CLI::App app("Runs a Tarsier site on recorded frames in virtual time.");
-        Options options;
-        declare(app, options);
-        options.sink = fs::read_symlink("/proc/self/exe").parent_path() / "tarsier-sink";
-        try {
-            app.parse(argc, argv);
-        } catch (const CLI::Success &help) {
-            return app.exit(help);
-        } catch (const CLI::ParseError &error) {
-            throw tsr::InputError("command line", "", error.what());
-        }
-        return run(options);
-    });
+    Options options;
+    options.sink = fs::read_symlink("/proc/self/exe").parent_path() / "tarsier-sink";
+    return tsr::run_command_line({"tarsier-emulator", "Runs a Tarsier site on recorded frames in virtual time.",
+                                  [&](CLI::App &app) { declare(app, options); }, [&] { return run(options); }},
+                                 argc, argv);
 }

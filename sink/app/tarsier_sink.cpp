@@ -9,10 +9,10 @@
 #include <optional>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "tsr/host/command_line.h"
 #include "tsr/host/input_error.h"
 #include "tsr/host/keys.h"
 #include "tsr/host/site.h"
@@ -34,7 +34,6 @@ struct Options {
     bool quiet = false;
 };
 
-/* Throws CLI::ParseError. */
 void declare(CLI::App &app, Options &options)
 {
     app.add_option("SITE", options.site, "site.toml")->required();
@@ -108,17 +107,9 @@ int run(const Options &options)
 
 int main(int argc, char **argv)
 {
-    return tsr::run_program("tarsier-sink", [&] {
-        CLI::App app("Receives the maps of a Tarsier site, stores them, and writes the cloud.");
-        Options options;
-        declare(app, options);
-        try {
-            app.parse(argc, argv);
-        } catch (const CLI::Success &help) {
-            return app.exit(help);
-        } catch (const CLI::ParseError &error) {
-            throw tsr::InputError("command line", "", error.what());
-        }
-        return run(options);
-    });
+    Options options;
+    return tsr::run_command_line({"tarsier-sink",
+                                  "Receives the maps of a Tarsier site, stores them, and writes the cloud.",
+                                  [&](CLI::App &app) { declare(app, options); }, [&] { return run(options); }},
+                                 argc, argv);
 }
