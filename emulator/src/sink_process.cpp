@@ -86,7 +86,8 @@ void SinkProcess::start()
                                             "--listen",
                                             "unix:" + socket_path_.string(),
                                             "--out",
-                                            options_.out.string()};
+                                            options_.out.string(),
+                                            "--once"}; /* it ends with this process, however that ends */
     std::vector<char *> argv;
     for (const std::string &word : words) {
         argv.push_back(const_cast<char *>(word.c_str())); /* posix_spawn does not change them */
