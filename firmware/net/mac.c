@@ -62,9 +62,14 @@ enum tsr_status tsr_mac_init(struct tsr_mac *mac, const struct tsr_mac_config *c
     return status == TSR_OK ? radio.ops->set_receiving(radio.self, true) : status;
 }
 
+/* A frame holds its place until its confirm is taken, so that no confirm can
+ * find its ring full. The interrupt moves frames from outgoing to confirms:
+ * counted in this order one may count twice, none is missed. */
 unsigned tsr_mac_room(const struct tsr_mac *mac)
 {
-    return TSR_MAC_QUEUE_LEN - ring_count(&mac->outgoing);
+    uint32_t held = ring_count(&mac->outgoing);
+    held += ring_count(&mac->confirms);
+    return held < TSR_MAC_QUEUE_LEN ? TSR_MAC_QUEUE_LEN - held : 0;
 }
 
 enum tsr_status tsr_mac_send(struct tsr_mac *mac, uint16_t peer, const uint8_t *payload, size_t len, uint16_t token,
@@ -133,15 +138,12 @@ static void begin_attempt(struct tsr_mac *mac, uint64_t now_us)
 /* Report the frame at the head and go on with the next. */
 static void finish_frame(struct tsr_mac *mac, enum tsr_status status, uint64_t time_us)
 {
-    /* As many confirms can wait as frames can: room is certain unless the task
-     * never takes confirms, and then the oldest are still right. */
-    if (ring_count(&mac->confirms) < TSR_MAC_QUEUE_LEN) {
-        struct tsr_mac_confirm *confirm = &mac->confirm_slots[ring_tail(&mac->confirms)];
-        confirm->token = mac->outgoing_frames[ring_head(&mac->outgoing)].token;
-        confirm->status = status;
-        confirm->time_us = time_us;
-        ring_push(&mac->confirms);
-    }
+    /* tsr_mac_room has kept a slot for it. */
+    struct tsr_mac_confirm *confirm = &mac->confirm_slots[ring_tail(&mac->confirms)];
+    confirm->token = mac->outgoing_frames[ring_head(&mac->outgoing)].token;
+    confirm->status = status;
+    confirm->time_us = time_us;
+    ring_push(&mac->confirms);
     ring_pop(&mac->outgoing);
     mac->state = IDLE;
     mac->timer_us = TSR_TIME_NEVER;
@@ -159,12 +161,16 @@ static void begin_next(struct tsr_mac *mac, uint64_t now_us)
             .pan_id = mac->config.pan_id,
             .destination = frame->peer,
             .source = mac->config.address,
-            .counter = mac->counter++,
+            .counter = mac->counter,
         };
+        if (mac->counter != UINT32_MAX) { /* worn out: sealing refuses it, and it must not wrap */
+            mac->counter++;
+        }
         size_t len = 0;
         enum tsr_status status =
             tsr_frame_seal(&header, mac->link_cipher, frame->payload, frame->len, mac->psdu, sizeof mac->psdu, &len);
         if (status != TSR_OK) {
+            mac->counters.unsealed++;
             finish_frame(mac, status, now_us);
             continue;
         }
@@ -184,6 +190,19 @@ static void update_listening(struct tsr_mac *mac)
     }
 }
 
+/* The channel is not clear: back off longer, or give the frame up. */
+static void on_busy(struct tsr_mac *mac, uint64_t time_us, uint64_t now_us)
+{
+    if (mac->backoffs < TSR_MAC_MAX_CSMA_BACKOFFS) {
+        mac->backoffs++;
+        mac->exponent = mac->exponent < TSR_MAC_MAX_BE ? (uint8_t)(mac->exponent + 1u) : mac->exponent;
+        start_backoff(mac, now_us);
+    } else {
+        mac->counters.channel_busy++;
+        finish_frame(mac, TSR_ERR_BUSY, time_us);
+    }
+}
+
 void tsr_mac_on_timer(struct tsr_mac *mac, uint64_t now_us)
 {
     update_listening(mac);
@@ -192,8 +211,9 @@ void tsr_mac_on_timer(struct tsr_mac *mac, uint64_t now_us)
         if (mac->radio.ops->transmit(mac->radio.self, mac->psdu, mac->psdu_len) == TSR_OK) {
             mac->state = TRANSMITTING;
             mac->timer_us = TSR_TIME_NEVER;
-        } else {
-            start_backoff(mac, now_us + TSR_MAC_UNIT_BACKOFF_US);
+        } else { /* a device that refuses for good must not hold the frame for good */
+            on_busy(mac, now_us, now_us + TSR_MAC_UNIT_BACKOFF_US);
+            begin_next(mac, now_us);
         }
     }
 }
@@ -209,16 +229,7 @@ static void on_transmitted(struct tsr_mac *mac, const struct tsr_radio_event *ev
         mac->counters.sent++;
         finish_frame(mac, TSR_OK, event->time_us);
         break;
-    case TSR_RADIO_CHANNEL_BUSY:
-        if (mac->backoffs < TSR_MAC_MAX_CSMA_BACKOFFS) {
-            mac->backoffs++;
-            mac->exponent = mac->exponent < TSR_MAC_MAX_BE ? (uint8_t)(mac->exponent + 1u) : mac->exponent;
-            start_backoff(mac, now_us);
-        } else {
-            mac->counters.channel_busy++;
-            finish_frame(mac, TSR_ERR_BUSY, event->time_us);
-        }
-        break;
+    case TSR_RADIO_CHANNEL_BUSY: on_busy(mac, event->time_us, now_us); break;
     case TSR_RADIO_NO_ACK:
     case TSR_RADIO_FAULT:
         if (mac->retries < TSR_MAC_MAX_FRAME_RETRIES && !mac->outgoing_frames[ring_head(&mac->outgoing)].once) {

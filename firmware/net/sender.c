@@ -23,7 +23,7 @@ void tsr_sender_init(struct tsr_sender *sender, uint16_t origin, uint16_t token)
 
 static bool is_pending(const struct tsr_sender *sender, unsigned index)
 {
-    return (sender->pending[index >> 3] >> (index & 7u) & 1u) != 0;
+    return ((unsigned)sender->pending[index >> 3] >> (index & 7u) & 1u) != 0;
 }
 
 static void set_pending(struct tsr_sender *sender, unsigned index)
@@ -52,8 +52,8 @@ static void finish(struct tsr_sender *sender, enum tsr_status result)
 enum tsr_status tsr_sender_start(struct tsr_sender *sender, const uint8_t *message, size_t message_len,
                                  uint16_t destination, uint32_t message_counter, uint64_t now_us)
 {
-    if (sender->state != IDLE) {
-        return TSR_ERR_BUSY;
+    if (!tsr_sender_is_idle(sender)) {
+        return TSR_ERR_BUSY; /* or a confirm of the last message would count for this one */
     }
     uint16_t count = tsr_fragment_count(message_len);
     if (count == 0) {
@@ -71,18 +71,17 @@ enum tsr_status tsr_sender_start(struct tsr_sender *sender, const uint8_t *messa
     }
     sender->next = 0;
     sender->tries = 0;
+    sender->idle_rounds = 0;
+    sender->missing_first = 0;
+    sender->missing_count = (uint16_t)(count + 1u);
     sender->state = SENDING;
     sender->timer_us = now_us;
     return TSR_OK;
 }
 
-/* Wait for progress, longer each time; give up after too many waits. */
+/* Wait for progress, longer each time. */
 static void wait(struct tsr_sender *sender, uint64_t first_us, uint64_t now_us)
 {
-    if (sender->tries >= TSR_SENDER_TRIES_MAX) {
-        finish(sender, TSR_ERR_TIMEOUT);
-        return;
-    }
     uint64_t wait_us = first_us << sender->tries;
     sender->timer_us = now_us + (wait_us < TSR_SENDER_WAIT_MAX_US ? wait_us : TSR_SENDER_WAIT_MAX_US);
     sender->tries++;
@@ -91,6 +90,10 @@ static void wait(struct tsr_sender *sender, uint64_t first_us, uint64_t now_us)
 void tsr_sender_step(struct tsr_sender *sender, struct tsr_mac *mac, const struct tsr_routes *routes, uint64_t now_us)
 {
     if (sender->state == IDLE || sender->mac_busy || now_us < sender->timer_us || tsr_mac_room(mac) == 0) {
+        return;
+    }
+    if (sender->tries >= TSR_SENDER_TRIES_MAX) { /* the last wait is over, too */
+        finish(sender, TSR_ERR_TIMEOUT);
         return;
     }
     if (sender->state == POLLED) { /* no STATUS came: ask again with the last fragment */
@@ -146,6 +149,38 @@ void tsr_sender_on_confirm(struct tsr_sender *sender, const struct tsr_mac_confi
     }
 }
 
+/* Whether an answer misses less than the one before it did. */
+static bool shows_progress(struct tsr_sender *sender, uint16_t first, uint16_t missing_count)
+{
+    bool progress = first > sender->missing_first || missing_count < sender->missing_count;
+    sender->missing_first = first;
+    sender->missing_count = missing_count;
+    return progress;
+}
+
+static void send_missing(struct tsr_sender *sender, const struct tsr_body_status *status, uint64_t now_us)
+{
+    for (unsigned i = 0; i < 8u * status->bitmap_len; i++) {
+        unsigned index = status->first + i;
+        if (((unsigned)status->bitmap[i >> 3] >> (i & 7u) & 1u) != 0 && index < sender->count) {
+            set_pending(sender, index);
+            sender->counters.fragments_again++;
+        }
+    }
+    if (sender->pending_count == 0) {
+        return; /* it names nothing: as if no answer had come */
+    }
+    sender->idle_rounds =
+        shows_progress(sender, status->first, sender->pending_count) ? 0 : (uint8_t)(sender->idle_rounds + 1u);
+    if (sender->idle_rounds >= TSR_SENDER_TRIES_MAX) {
+        finish(sender, TSR_ERR_TIMEOUT);
+        return;
+    }
+    sender->state = SENDING;
+    sender->tries = 0;
+    sender->timer_us = now_us;
+}
+
 void tsr_sender_on_status(struct tsr_sender *sender, const struct tsr_body_status *status, uint64_t now_us)
 {
     if (sender->state == IDLE || status->message_id != sender->message_id) {
@@ -162,18 +197,7 @@ void tsr_sender_on_status(struct tsr_sender *sender, const struct tsr_body_statu
     if (sender->state == SENDING) {
         return; /* an old answer: what it misses may be on its way */
     }
-    for (unsigned i = 0; i < 8u * status->bitmap_len; i++) {
-        unsigned index = status->first + i;
-        if ((status->bitmap[i >> 3] >> (i & 7u) & 1u) != 0 && index < sender->count) {
-            set_pending(sender, index);
-            sender->counters.fragments_again++;
-        }
-    }
-    if (sender->pending_count > 0) {
-        sender->state = SENDING;
-        sender->tries = 0;
-        sender->timer_us = now_us;
-    }
+    send_missing(sender, status, now_us);
 }
 
 bool tsr_sender_is_idle(const struct tsr_sender *sender)

@@ -96,7 +96,9 @@ static void begin_pair_capture(struct tsr_node *node, uint64_t now_us)
     node->capture_id++;
     node->attempt = 0;
     if (node->config.role == TSR_ROLE_LEAD) {
-        send_wake(node, now_us);
+        /* In a step of its own: its confirm must not wait until the work of this one is done. */
+        node->wake_due = true;
+        enter(node, TSR_PHASE_WAKING);
         return;
     }
     /* A right camera that fails to start is seen when the left one is done. */
@@ -179,13 +181,23 @@ static struct work await_view(struct tsr_node *node, uint64_t now_us)
     return no_work();
 }
 
+static struct work wake_wing(struct tsr_node *node, uint64_t now_us)
+{
+    if (node->wake_due) {
+        node->wake_due = false;
+        send_wake(node, now_us);
+    }
+    return no_work(); /* WAKING ends with a confirm */
+}
+
 struct work tsr_node_watch(struct tsr_node *node, uint64_t now_us)
 {
     switch (node->phase) {
     case TSR_PHASE_IDLE: return start_watching(node, now_us);
     case TSR_PHASE_WATCHING: return compare_with_background(node, now_us);
+    case TSR_PHASE_WAKING: return wake_wing(node, now_us);
     case TSR_PHASE_CAPTURING: return take_views(node, now_us);
     case TSR_PHASE_RECEIVING: return await_view(node, now_us);
-    default: return no_work(); /* WAKING ends with a confirm */
+    default: return no_work();
     }
 }

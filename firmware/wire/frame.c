@@ -111,7 +111,8 @@ enum tsr_status tsr_frame_parse(const uint8_t *psdu, size_t psdu_len, struct tsr
     uint8_t control = tsr_read_u8(&reader);
     read.counter = tsr_read_u32(&reader);
     uint8_t key_index = tsr_read_u8(&reader);
-    if ((fcf & ~FCF_ACK_REQUEST) != FCF_OURS || control != SECURITY_CONTROL || key_index != KEY_INDEX_LINK) {
+    if ((fcf & ~FCF_ACK_REQUEST) != FCF_OURS || control != SECURITY_CONTROL || key_index != KEY_INDEX_LINK ||
+        read.counter == COUNTER_EXHAUSTED) {
         return TSR_ERR_FORMAT;
     }
     *header = read;

@@ -16,9 +16,8 @@ namespace
 {
 
 constexpr std::uint16_t kBroadcast = 0xffff;
-constexpr std::size_t kAckLen = 5;
-constexpr std::uint8_t kTypeMask = 0x07; /* frame control field, IEEE 802.15.4-2015, 7.2.2.1 */
-constexpr std::uint8_t kTypeAck = 0x02;
+constexpr std::size_t kAddressedLen = 9; /* up to the source address: shorter ones are for nobody */
+constexpr std::uint8_t kTypeAck = 0x02;  /* frame control field, IEEE 802.15.4-2015, 7.2.2.1 */
 constexpr std::uint8_t kAckRequest = 0x20;
 
 /* SplitMix64 (Steele, Lea, Flood, OOPSLA 2014). */
@@ -78,6 +77,8 @@ struct Air::Transmission {
     std::uint64_t end_us = 0;
     std::vector<std::uint8_t> psdu;
     std::vector<std::size_t> overlaps; /* senders of transmissions that overlapped this one */
+    Radio *acknowledges = nullptr;     /* an acknowledgement's addressee */
+    std::uint64_t frame_end_us = 0;    /* of the frame it acknowledges */
 };
 
 const tsr_radio_ops Air::kOps = {&Air::configure, &Air::set_receiving, &Air::transmit};
@@ -134,9 +135,10 @@ void Air::account(Radio &radio) const
     const std::uint64_t now_us = clock_.now_us();
     const std::uint64_t passed_us = now_us - radio.accounted_us;
     radio.accounted_us = now_us;
-    (radio.sending     ? radio.times.transmitting
-     : radio.receiving ? radio.times.receiving
-                       : radio.times.sleeping) += passed_us;
+    /* Sensing and waiting for an acknowledgement need the receiver, whatever the MAC wants. */
+    (radio.sending                   ? radio.times.transmitting
+     : radio.receiving || radio.busy ? radio.times.receiving
+                                     : radio.times.sleeping) += passed_us;
 }
 
 AirTimes Air::times(std::size_t index) const
@@ -171,12 +173,13 @@ tsr_status Air::set_receiving(void *radio, bool receiving)
 tsr_status Air::transmit(void *radio, const std::uint8_t *psdu, std::size_t psdu_len)
 {
     auto &self = *static_cast<Radio *>(radio);
-    if (psdu_len > 127) {
+    if (psdu_len == 0 || psdu_len > 127) {
         return TSR_ERR_ARG;
     }
     if (self.busy) {
         return TSR_ERR_BUSY;
     }
+    self.air->account(self);
     self.busy = true;
     ++self.attempt;
     self.psdu.assign(psdu, psdu + psdu_len);
@@ -242,22 +245,27 @@ void Air::send_ack(Radio &radio, Radio &to, std::uint8_t sequence, std::uint64_t
     psdu.push_back(static_cast<std::uint8_t>(check));
     psdu.push_back(static_cast<std::uint8_t>(check >> 8));
     const auto ack = begin(radio, std::move(psdu));
-    clock_.at(ack->end_us, [this, ack, &to, frame_end_us] {
-        if (hears(to, *ack) && !chance_loses(*ack, to.index)) {
-            finish(to, TSR_RADIO_ACKED, frame_end_us);
-        }
-    });
+    ack->acknowledges = &to;
+    ack->frame_end_us = frame_end_us;
 }
 
-bool Air::hears(const Radio &receiver, const Transmission &transmission) const
+/* Near enough, not sending, and nothing else in the way. */
+bool Air::reaches(const Radio &receiver, const Transmission &transmission) const
 {
-    if (receiver.index == transmission.sender || !receiver.receiving || receiver.sending ||
-        receiver.channel != transmission.channel || receiver.listening_since_us > transmission.start_us ||
+    if (receiver.index == transmission.sender || receiver.sending || receiver.channel != transmission.channel ||
         !audible(transmission.sender, receiver.index)) {
         return false;
     }
     return std::none_of(transmission.overlaps.begin(), transmission.overlaps.end(),
                         [&](std::size_t other) { return other == receiver.index || audible(other, receiver.index); });
+}
+
+/* A data frame needs a receiver that was on all the time. For its acknowledgement
+ * a radio listens by itself, even if the MAC has told it to sleep. */
+bool Air::hears(const Radio &receiver, const Transmission &transmission) const
+{
+    return receiver.receiving && receiver.listening_since_us <= transmission.start_us &&
+           reaches(receiver, transmission);
 }
 
 bool Air::chance_loses(const Transmission &transmission, std::size_t receiver) const
@@ -287,33 +295,64 @@ void Air::end(const std::shared_ptr<Transmission> &transmission)
     sender.listening_since_us = clock_.now_us();
 
     const auto &psdu = transmission->psdu;
-    AirFrame frame{transmission->start_us, sender.index, transmission->channel, psdu.data(), psdu.size(), 0};
-    if (psdu.size() == kAckLen && (psdu[0] & kTypeMask) == kTypeAck) {
-        if (tap_) {
-            tap_(frame);
-        }
-        return; /* its outcome is drawn in send_ack, at the same instant */
+    const AirFrame frame{transmission->start_us, sender.index, transmission->channel, psdu.data(), psdu.size(), 0};
+    const AirFate fate = judge_ ? judge_(transmission->number, frame) : AirFate::natural;
+    if (transmission->acknowledges != nullptr) {
+        end_ack(*transmission, frame, fate);
+    } else {
+        end_data(*transmission, frame, fate);
     }
-    const unsigned pan_id = psdu[3] | psdu[4] << 8;
-    const unsigned destination = psdu[5] | psdu[6] << 8;
-    const bool wants_ack = (psdu[0] & kAckRequest) != 0 && destination != kBroadcast;
-    std::vector<Radio *> receivers;
-    for (const auto &radio : radios_) {
-        if (radio->index == sender.index || radio->pan_id != pan_id ||
-            (destination != kBroadcast && radio->address != destination)) {
-            continue;
-        }
-        if (hears(*radio, *transmission) && !chance_loses(*transmission, radio->index)) {
-            receivers.push_back(radio.get());
-        } else {
-            ++frame.lost_at;
-        }
-    }
+}
+
+void Air::end_ack(const Transmission &transmission, AirFrame frame, AirFate fate)
+{
+    Radio &to = *transmission.acknowledges;
+    const bool got = fate != AirFate::lost && reaches(to, transmission) && !chance_loses(transmission, to.index);
+    frame.lost_at = got ? 0 : 1;
     if (tap_) {
         tap_(frame);
     }
-    const std::uint64_t end_us = transmission->end_us;
-    if (!wants_ack) {
+    if (got && to.busy) {
+        finish(to, TSR_RADIO_ACKED, transmission.frame_end_us);
+    }
+}
+
+/* Those addressed that get the frame; lost_at counts those that do not. */
+std::vector<Air::Radio *> Air::receivers_of(const Transmission &transmission, AirFate fate,
+                                            std::uint64_t &lost_at) const
+{
+    const auto &psdu = transmission.psdu;
+    std::vector<Radio *> receivers;
+    if (psdu.size() < kAddressedLen) {
+        return receivers;
+    }
+    const unsigned pan_id = psdu[3] | psdu[4] << 8;
+    const unsigned destination = psdu[5] | psdu[6] << 8;
+    for (const auto &radio : radios_) {
+        if (radio->index == transmission.sender || radio->pan_id != pan_id ||
+            (destination != kBroadcast && radio->address != destination)) {
+            continue;
+        }
+        if (fate != AirFate::lost && hears(*radio, transmission) && !chance_loses(transmission, radio->index)) {
+            receivers.push_back(radio.get());
+        } else {
+            ++lost_at;
+        }
+    }
+    return receivers;
+}
+
+void Air::end_data(const Transmission &transmission, AirFrame frame, AirFate fate)
+{
+    Radio &sender = *radios_[transmission.sender];
+    const auto &psdu = transmission.psdu;
+    const std::vector<Radio *> receivers = receivers_of(transmission, fate, frame.lost_at);
+    if (tap_) {
+        tap_(frame);
+    }
+    const std::uint64_t end_us = transmission.end_us;
+    const bool broadcast = psdu.size() < kAddressedLen || (psdu[5] | psdu[6] << 8) == kBroadcast;
+    if ((psdu[0] & kAckRequest) == 0 || broadcast) {
         finish(sender, TSR_RADIO_SENT, end_us);
     } else {
         if (!receivers.empty()) {
@@ -329,12 +368,16 @@ void Air::end(const std::shared_ptr<Transmission> &transmission)
         });
     }
     for (Radio *receiver : receivers) {
-        deliver(*receiver, *transmission);
+        deliver(*receiver, transmission);
+        if (fate == AirFate::twice) {
+            deliver(*receiver, transmission);
+        }
     }
 }
 
 void Air::finish(Radio &radio, tsr_radio_outcome outcome, std::uint64_t frame_end_us)
 {
+    account(radio);
     radio.busy = false;
     tsr_radio_event event{};
     event.kind = TSR_RADIO_TX_DONE;

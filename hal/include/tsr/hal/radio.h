@@ -70,7 +70,7 @@ struct tsr_radio_ops {
     /* Receive or sleep when not transmitting. */
     enum tsr_status (*set_receiving)(void *radio, bool receiving);
     /* Sense, then send psdu[psdu_len] (with FCS), which is kept until TX_DONE.
-     * TSR_ERR_BUSY while an earlier one is unanswered; TSR_ERR_ARG for a length over 127. */
+     * TSR_ERR_BUSY while an earlier one is unanswered; TSR_ERR_ARG for a length of 0 or over 127. */
     enum tsr_status (*transmit)(void *radio, const uint8_t *psdu, size_t psdu_len);
 };
 

@@ -62,7 +62,8 @@ struct tsr_mac_frame {
 struct tsr_mac_confirm {
     uint64_t time_us; /* end of the transmission that was acknowledged */
     uint16_t token;
-    enum tsr_status status; /* TSR_OK; TSR_ERR_TIMEOUT: no ack; TSR_ERR_BUSY: channel never clear */
+    enum tsr_status status; /* TSR_OK; TSR_ERR_TIMEOUT: no ack; TSR_ERR_BUSY: channel never clear or radio
+                               refused; TSR_ERR_ARG: frame counters used up; what the cipher returned */
 };
 
 struct tsr_mac_neighbour {
@@ -74,7 +75,8 @@ struct tsr_mac_neighbour {
 struct tsr_mac_counters {
     uint32_t sent;           /* acknowledged */
     uint32_t unacknowledged; /* gave up after the retries */
-    uint32_t channel_busy;   /* gave up in CSMA */
+    uint32_t channel_busy;   /* gave up in CSMA, or the radio refused to send */
+    uint32_t unsealed;       /* frame counters used up, or the cipher failed */
     uint32_t retries;
     uint32_t received;          /* handed up */
     uint32_t dropped_format;    /* not a frame of ours, or for somebody else */
@@ -126,7 +128,8 @@ enum tsr_status tsr_mac_init(struct tsr_mac *mac, const struct tsr_mac_config *c
 
 /* Task context -------------------------------------------------------------- */
 
-/* Frames that tsr_mac_send would take now. */
+/* Frames that tsr_mac_send would take now: those in the MAC and those whose
+ * confirm was not taken yet are TSR_MAC_QUEUE_LEN at most. */
 unsigned tsr_mac_room(const struct tsr_mac *mac);
 
 /* Queue a payload for peer; its confirm comes later with the same token.

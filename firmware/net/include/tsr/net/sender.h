@@ -10,7 +10,8 @@
  * One fragment is in the MAC at a time. A fragment the next hop did not
  * acknowledge stays pending; what a relay lost later comes back in a STATUS.
  * Waiting grows from TSR_SENDER_WAIT_MIN_US by doubling; after
- * TSR_SENDER_TRIES_MAX waits without any progress the message is given up.
+ * TSR_SENDER_TRIES_MAX waits without any progress, or as many answers that miss
+ * no less than the one before, the message is given up.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -47,6 +48,9 @@ struct tsr_sender {
     uint16_t in_mac; /* fragment index */
     uint8_t state;
     uint8_t tries;
+    uint8_t idle_rounds;    /* answers in a row that missed as much as the one before */
+    uint16_t missing_first; /* of the last answer */
+    uint16_t missing_count;
     bool mac_busy;
     enum tsr_status result;
     uint64_t timer_us;
@@ -58,7 +62,7 @@ struct tsr_sender {
 void tsr_sender_init(struct tsr_sender *sender, uint16_t origin, uint16_t token);
 
 /* Begin to send a sealed message, kept until the sender is idle again.
- * TSR_ERR_BUSY while one is under way; TSR_ERR_SIZE: empty or too long. */
+ * TSR_ERR_BUSY while it is not; TSR_ERR_SIZE: empty or too long. */
 enum tsr_status tsr_sender_start(struct tsr_sender *sender, const uint8_t *message, size_t message_len,
                                  uint16_t destination, uint32_t message_counter, uint64_t now_us);
 
@@ -77,7 +81,8 @@ void tsr_sender_on_status(struct tsr_sender *sender, const struct tsr_body_statu
 
 bool tsr_sender_is_idle(const struct tsr_sender *sender);
 /* How the last message ended: TSR_OK committed, TSR_ERR_TIMEOUT given up,
- * TSR_ERR_FORMAT refused by its destination. */
+ * TSR_ERR_FORMAT refused by its destination, TSR_ERR_NOROUTE, TSR_ERR_BUSY
+ * aborted. */
 enum tsr_status tsr_sender_result(const struct tsr_sender *sender);
 /* When tsr_sender_step wants to be called; TSR_TIME_NEVER if on an event only. */
 uint64_t tsr_sender_timer_us(const struct tsr_sender *sender);

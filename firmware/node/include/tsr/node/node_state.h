@@ -59,7 +59,7 @@ struct tsr_node {
     bool has_last_map;
     uint16_t capture_id;
     uint8_t attempt;
-    bool wake_due; /* wing: a WAKE waits for the camera */
+    bool wake_due; /* lead: a WAKE is to be sent; wing: one waits for the camera */
     uint64_t capture_at_us;
     uint64_t capture_time_us; /* start of exposure of the left view */
     struct tsr_capture left;

@@ -55,6 +55,13 @@ struct AirFrame {
     std::uint64_t lost_at = 0; /* receivers addressed that did not get it: 0 or 1; broadcasts: their number */
 };
 
+/* What becomes of one transmission, when a test decides it. */
+enum class AirFate {
+    natural, /* distance, overlap and chance decide */
+    lost,    /* nobody gets it */
+    twice    /* who gets it gets it twice; an acknowledgement counts once */
+};
+
 class Air
 {
   public:
@@ -64,6 +71,8 @@ class Air
     };
     using EventHandler = std::function<void(const tsr_radio_event &)>;
     using Tap = std::function<void(const AirFrame &)>;
+    /* number: transmissions counted from 0, acknowledgements included. */
+    using Judge = std::function<AirFate(std::uint64_t number, const AirFrame &)>;
 
     Air(const AirModel &model, Clock clock);
     ~Air();
@@ -75,6 +84,9 @@ class Air
     tsr_radio radio(std::size_t index);
     /* Sees every PSDU when its transmission ends. */
     void set_tap(Tap tap) { tap_ = std::move(tap); }
+    /* Asked once at the end of every transmission, before the tap. */
+    void set_judge(Judge judge) { judge_ = std::move(judge); }
+    std::uint64_t transmissions() const { return transmissions_; }
     AirTimes times(std::size_t index) const; /* until now */
     int rssi_dbm(std::size_t from, std::size_t to) const;
 
@@ -94,6 +106,10 @@ class Air
     void send_ack(Radio &radio, Radio &to, std::uint8_t sequence, std::uint64_t frame_end_us);
     std::shared_ptr<Transmission> begin(Radio &sender, std::vector<std::uint8_t> psdu);
     void end(const std::shared_ptr<Transmission> &transmission);
+    void end_data(const Transmission &transmission, AirFrame frame, AirFate fate);
+    void end_ack(const Transmission &transmission, AirFrame frame, AirFate fate);
+    std::vector<Radio *> receivers_of(const Transmission &transmission, AirFate fate, std::uint64_t &lost_at) const;
+    bool reaches(const Radio &receiver, const Transmission &transmission) const;
     bool hears(const Radio &receiver, const Transmission &transmission) const;
     bool chance_loses(const Transmission &transmission, std::size_t receiver) const;
     void deliver(Radio &receiver, const Transmission &transmission);
@@ -103,6 +119,7 @@ class Air
     AirModel model_;
     Clock clock_;
     Tap tap_;
+    Judge judge_;
     std::uint32_t loss_q16_ = 0;
     std::uint64_t transmissions_ = 0;
     std::vector<std::unique_ptr<Radio>> radios_;
