@@ -129,14 +129,15 @@ static uint8_t reduce_cell(const struct tsr_change *change, const struct tsr_gra
                            unsigned cell_y)
 {
     unsigned side = change->config.reduction;
+    unsigned area_log2 = side == 2 ? 2u : side == 4 ? 4u : 6u;
     const uint8_t *row = frame->pixels + (size_t)cell_y * side * frame->stride + (size_t)cell_x * side;
-    unsigned sum = side * side / 2u;
+    unsigned sum = 1u << (area_log2 - 1u);
     for (unsigned y = 0; y < side; y++, row += frame->stride) {
         for (unsigned x = 0; x < side; x++) {
             sum += row[x];
         }
     }
-    return (uint8_t)(sum / (side * side));
+    return (uint8_t)(sum >> area_log2);
 }
 
 static unsigned step_towards(unsigned value, unsigned target)

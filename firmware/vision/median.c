@@ -54,6 +54,7 @@ static uint16_t filter_pixel(const struct rows *rows, unsigned x, unsigned width
             }
         }
     }
+    /* cppcheck-suppress uninitvar ; count values are set */
     return count >= TSR_MEDIAN_VALID_MIN ? values[(count - 1u) / 2u] : TSR_DISPARITY_INVALID;
 }
 
