@@ -7,6 +7,7 @@
  * SPDX-License-Identifier: Apache-2.0
  */
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -15,19 +16,22 @@
 
 #include <unistd.h>
 
+#include "tsr/emulator/out_folder.h"
 #include "tsr/emulator/pair_site.h"
+#include "tsr/emulator/preflight.h"
 #include "tsr/emulator/report.h"
 #include "tsr/emulator/simulation.h"
 #include "tsr/host/atomic_file.h"
 #include "tsr/host/command_line.h"
 #include "tsr/host/input_error.h"
 #include "tsr/host/keys.h"
-#include "tsr/host/recorded_frames.h"
 
 namespace
 {
 
 namespace fs = std::filesystem;
+
+constexpr std::uint64_t kSeedMax = 0x7fffffffffffffff; /* TOML integers are signed */
 
 struct Options {
     fs::path site;
@@ -47,8 +51,10 @@ void declare(CLI::App &app, Options &options)
     app.add_option("--focal-px", options.pair_options.focal_px, "focal length of the rectified pair, px")->needs(pair);
     app.add_option("--baseline-mm", options.pair_options.baseline_mm, "distance of the two cameras, mm")->needs(pair);
     app.add_option("--d0", options.pair_options.d0_px, "disparity offset, px: Z = f B / (d + d0)")->needs(pair);
-    app.add_option("--disparities", options.pair_options.disparities, "disparities searched, 16..128")->needs(pair);
-    app.add_option("--seed", options.seed, "instead of the site's");
+    app.add_option("--disparities", options.pair_options.disparities, "disparities searched, 16..128, a multiple of 8")
+        ->needs(pair)
+        ->check(CLI::Range(16, 128));
+    app.add_option("--seed", options.seed, "instead of the site's")->check(CLI::Range(kSeedMax));
     app.add_option("--out", options.out, "folder for the results")->required();
     app.add_option("--sink", options.sink, "the tarsier-sink program, by default the one beside this");
     app.add_flag("--quiet", options.quiet, "no progress bar");
@@ -96,27 +102,17 @@ class ProgressBar
     std::chrono::steady_clock::time_point last_{};
 };
 
-/* The folder for the results, free of an earlier run's database and maps: the
- * test keys are the same again, so its counters would look like replays. */
-void prepare_out(const fs::path &out)
+/* A signal asks for an end; the run then reports what it has. */
+volatile std::sig_atomic_t stop_signal = 0;
+
+void take_signals()
 {
-    std::error_code error;
-    fs::create_directories(out, error);
-    if (error) {
-        throw tsr::InputError(out.string(), "--out", error.message());
+    struct sigaction action {
+    };
+    action.sa_handler = [](int number) { stop_signal = number; };
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+        sigaction(number, &action, nullptr);
     }
-    for (const char *name : {"sink.db", "sink.db-wal", "sink.db-shm", "sink.log", "sink.json", "summary.json"}) {
-        fs::remove(out / name, error);
-        if (error) {
-            throw tsr::InputError((out / name).string(), "remove", error.message());
-        }
-    }
-    for (const auto &entry : fs::directory_iterator(out / "maps", error)) {
-        if (entry.path().extension() == ".pfm" || entry.path().extension() == ".png") {
-            fs::remove(entry.path(), error);
-        }
-    }
-    tsr::write_file_atomically(out / "sink.log", std::string_view());
 }
 
 tsr::Site choose_site(const Options &options)
@@ -185,28 +181,37 @@ int run(const Options &options)
 {
     const auto start = std::chrono::steady_clock::now();
     const tsr::Site site = with_absolute_folders(choose_site(options));
-    tsr::check_recordings(site);
-    prepare_out(options.out);
-    const fs::path site_file = options.out / "site.toml";
     const tsr::KeyRing keys = tsr::derive_test_keys(site.seed, site);
-    tsr::write_site(site_file, site);
-    tsr::write_keys(options.out / "keys.toml", keys);
+    tsr::check_run(site, keys);
+    tsr::OutFolder out(options.out);
+    tsr::write_site(out.file("site.toml"), site);
+    tsr::load_site(out.file("site.toml")); /* what the sink would refuse is refused here, by name */
+    tsr::write_keys(out.file("keys.toml"), keys);
 
-    tsr::SinkProcess sink({options.sink, site_file, options.out / "keys.toml", options.out / "sink.db", options.out,
-                           options.out / "sink.log"});
+    take_signals();
+    tsr::SinkProcess sink({options.sink, out.file("site.toml"), out.file("keys.toml"), out.file("sink.db"), out.path(),
+                           out.file("sink.log")});
     tsr::Simulation simulation(site, keys, sink);
     ProgressBar progress(!options.quiet);
-    simulation.run([&](std::uint64_t now_us, std::uint64_t end_us) { progress(now_us, end_us); });
+    simulation.run([&](std::uint64_t now_us, std::uint64_t end_us) {
+        progress(now_us, end_us);
+        return stop_signal == 0;
+    });
     progress.finish();
     sink.finish();
 
-    simulation.capture().write(options.out / "capture.pcapng");
-    const auto maps = tsr::read_received_maps(site, simulation, options.out);
+    simulation.capture().write(out.file("capture.pcapng"));
+    const auto maps = tsr::read_received_maps(site, simulation, out.path());
     const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const auto summary = tsr::make_summary(site, simulation, maps, sink.restarts(), wall_s);
-    tsr::write_page(options.out, summary, simulation, maps);
-    tsr::write_file_atomically(options.out / "summary.json", summary.dump(2) + "\n");
-    print_result(options.out, summary);
+    tsr::write_page(out.path(), summary, simulation, maps);
+    tsr::write_file_atomically(out.file("summary.json"), summary.dump(2) + "\n");
+    out.keep();
+    print_result(out.path(), summary);
+    if (stop_signal != 0) {
+        std::printf("stopped by a signal: the results are those of the time until then\n");
+        return 128 + stop_signal;
+    }
     return 0;
 }
 

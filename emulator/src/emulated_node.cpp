@@ -20,8 +20,6 @@ namespace tsr
 namespace
 {
 
-constexpr std::uint32_t kFramePeriodMsDefault = 500; /* of a folder without times.csv */
-
 const tsr_entropy_ops *entropy_ops(void (*fill)(void *, std::uint8_t *, std::size_t))
 {
     static tsr_entropy_ops ops{};
@@ -52,7 +50,7 @@ EmulatedNode::~EmulatedNode() = default;
 
 void EmulatedNode::add_camera(bool right, const std::filesystem::path &folder)
 {
-    auto frames = std::make_shared<RecordedFrames>(folder, kFramePeriodMsDefault);
+    auto frames = std::make_shared<RecordedFrames>(folder, site_node_.watch_period_ms);
     recordings_.push_back(frames);
     std::unique_ptr<RecordedCamera> &camera = right ? right_ : left_;
     RecordedCamera::Owner owner;

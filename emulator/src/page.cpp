@@ -114,10 +114,11 @@ void write_page(const std::filesystem::path &out, const Json &summary, const Sim
                     {"timeline", timeline_json(simulation)},
                     {"maps", maps_json(out, maps)},
                     {"cloud", cloud_json(out / "cloud.ply")}};
-    /* "</" would end the script element that carries the data. */
+    /* "<" could end the script element that carries the data, or begin another. */
+    constexpr std::string_view kEscaped = "\\u003c";
     std::string text = data.dump();
-    for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3) {
-        text.replace(at, 2, "<\\/");
+    for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos; at += kEscaped.size()) {
+        text.replace(at, 1, kEscaped);
     }
     std::string page = kPageTemplate;
     page.replace(page.find(kDataMark), kDataMark.size(), text);

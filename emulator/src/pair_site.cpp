@@ -63,6 +63,8 @@ Site make_pair_site(const PairOptions &options)
     pair.d0_px = options.d0_px;
     pair.focal_px = options.focal_px;
     pair.baseline_mm = options.baseline_mm;
+    /* Looking along the site's y axis, z up: camera z to site y, camera y down. */
+    pair.left.rotation = {1, 0, 0, 0, 0, 1, 0, -1, 0};
     pair.principal_px = {(pair.width - 1) / 2.0, (pair.height - 1) / 2.0};
     site.pairs = {pair};
     check_site(site);

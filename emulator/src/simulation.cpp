@@ -40,7 +40,7 @@ Simulation::Simulation(const Site &site, const KeyRing &keys, SinkProcess &sink)
         if (node.role == Role::gateway) {
             around.port = {&kPortOps, this};
         }
-        around.phase_changed = [this](const PhaseChange &change) { timeline_.push_back(change); };
+        around.phase_changed = [this](const PhaseChange &change) { note(change); };
         nodes_.push_back(std::make_unique<EmulatedNode>(site_, node, keys, around));
         if (node.role == Role::gateway) {
             gateway_ = nodes_.back().get();
@@ -69,6 +69,13 @@ tsr_status Simulation::write_port(void *self, const std::uint8_t *bytes, std::si
     return TSR_OK;
 }
 
+void Simulation::note(const PhaseChange &change)
+{
+    if (change.phase > TSR_PHASE_WATCHING || timeline_.size() < kWatchingNotedMax) {
+        timeline_.push_back(change);
+    }
+}
+
 bool Simulation::quiet() const
 {
     return std::all_of(nodes_.begin(), nodes_.end(), [](const auto &node) { return node->at_rest(); });
@@ -91,8 +98,8 @@ void Simulation::run(const Progress &progress)
             break;
         }
         queue_.run_next();
-        if (progress) {
-            progress(queue_.now_us(), played_us);
+        if (progress && !progress(queue_.now_us(), played_us)) {
+            break;
         }
     }
 }

@@ -33,7 +33,8 @@ namespace
 
 constexpr int kConnectTries = 500; /* of 10 ms: a loaded machine may be slow to start it */
 constexpr int kAnswerTimeoutMs = 30'000;
-constexpr unsigned kRestartsMax = 1000;
+/* In a row, without one answer between them: then it is not killed, it cannot live. */
+constexpr unsigned kFailuresMax = 200;
 
 /* Type and sequence of an encoded frame; type 0 if it is none. */
 tsr_link_frame decode_frame(const std::uint8_t *bytes, std::size_t len)
@@ -57,7 +58,7 @@ SinkProcess::SinkProcess(Options options)
 {
     if (socket_path_.string().size() >= sizeof(sockaddr_un::sun_path)) {
         /* A Unix socket's path has 107 bytes at most; out folders may be deeper. */
-        socket_path_ = std::filesystem::temp_directory_path() / ("tarsier-" + std::to_string(getpid()) + ".socket");
+        socket_path_ = std::filesystem::path("/tmp") / ("tarsier-" + std::to_string(getpid()) + ".socket");
     }
     start();
 }
@@ -99,7 +100,12 @@ void SinkProcess::start()
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, options_.log.c_str(), O_WRONLY | O_CREAT | O_APPEND,
                                      0644);
     posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-    const int error = posix_spawn(&pid_, options_.program.c_str(), &actions, nullptr, argv.data(), environ);
+    /* A process group of its own: a Ctrl-C is this program's to deal with. */
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+    const int error = posix_spawn(&pid_, options_.program.c_str(), &actions, &attributes, argv.data(), environ);
+    posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     if (error != 0) {
         pid_ = -1;
@@ -218,6 +224,7 @@ std::vector<std::uint8_t> SinkProcess::exchange(const std::uint8_t *frame, std::
     while (!try_exchange(frame, len, answer)) {
         restart();
     }
+    failures_ = 0;
     return answer;
 }
 
@@ -228,8 +235,10 @@ void SinkProcess::restart()
         kill(pid_, SIGKILL); /* alive but silent is as good as dead */
         reap(true);
     }
-    if (++restarts_ > kRestartsMax) {
-        throw std::runtime_error("tarsier-sink does not stay alive; see " + options_.log.string());
+    ++restarts_;
+    if (++failures_ > kFailuresMax) {
+        throw InputError(options_.program.string(), "run",
+                         "does not answer; " + options_.log.string() + " may say why");
     }
     start();
 }

@@ -187,7 +187,7 @@ Json make_summary(const Site &site, const Simulation &simulation, const std::vec
             {"site", site.name},
             {"seed", site.seed},
             {"virtual_time_s", rounded(static_cast<double>(simulation.duration_us()) / 1e6, 6)},
-            {"delivered", simulation.quiet()},
+            {"settled", simulation.quiet()},
             {"sink_restarts", sink_restarts},
             {"totals", totals_json(nodes)},
             {"pairs", std::move(pairs)},

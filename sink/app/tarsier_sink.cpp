@@ -82,6 +82,15 @@ tsr::SessionNumbers receive(const Entrance &entrance, const tsr::Site &site, tsr
     return {receiver.tally(), server.counts(), receiver.repeated()};
 }
 
+void make_out(const std::filesystem::path &out)
+{
+    std::error_code error;
+    std::filesystem::create_directories(out, error);
+    if (error) {
+        throw tsr::InputError(out.string(), "--out", error.message());
+    }
+}
+
 int run(const Options &options)
 {
     spdlog::set_default_logger(spdlog::stderr_logger_st("tarsier-sink"));
@@ -95,6 +104,7 @@ int run(const Options &options)
     if (!options.export_only) {
         entrance = open_entrance(options, site);
     }
+    make_out(options.out);
     tsr::Store store(options.database, site.pan_id,
                      options.export_only ? tsr::Store::Open::existing : tsr::Store::Open::create);
     const tsr::SessionNumbers session = entrance ? receive(*entrance, site, store) : tsr::SessionNumbers{};

@@ -43,8 +43,9 @@ void clear_stale(const ListenAddress &address, const sockaddr_un &name)
     if (!S_ISSOCK(status.st_mode)) {
         refuse(address, "path", "exists and is not a socket");
     }
-    const Descriptor probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-    if (::connect(probe.get(), reinterpret_cast<const sockaddr *>(&name), sizeof name) == 0) {
+    const Descriptor probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+    /* EAGAIN: somebody listens, with a full backlog. */
+    if (::connect(probe.get(), reinterpret_cast<const sockaddr *>(&name), sizeof name) == 0 || errno == EAGAIN) {
         refuse(address, "path", "another sink listens here");
     }
     ::unlink(name.sun_path);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <memory>
@@ -28,9 +29,13 @@ constexpr std::size_t kReadLen = 65536;
 /* A peer that asks and never reads is dropped when this much waits for it. */
 constexpr std::size_t kOutgoingMax = std::size_t{1} << 20;
 
+/* A gateway says HELLO at once. Who says nothing must not keep a place from one. */
+constexpr std::chrono::seconds kSilenceMax{10};
+
 struct Peer {
     Descriptor descriptor;
     LinkSession session;
+    std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();
     bool closed = false;
 };
 
@@ -86,6 +91,7 @@ class Loop
             }
             read_all(waits);
             write_all();
+            close_silent();
             drop_closed();
         }
     }
@@ -108,10 +114,33 @@ class Loop
             const short events = peer->session.outgoing().empty() ? POLLIN : POLLIN | POLLOUT;
             waits.push_back({peer->descriptor.get(), events, 0});
         }
-        if (::poll(waits.data(), waits.size(), -1) < 0 && errno != EINTR) {
+        const int timeout_ms = anybody_silent() ? 1000 : -1;
+        if (::poll(waits.data(), waits.size(), timeout_ms) < 0 && errno != EINTR) {
             throw std::runtime_error(std::string("poll: ") + std::strerror(errno));
         }
         return waits;
+    }
+
+    /* A serial port's gateway may have said its HELLO to an earlier sink. */
+    bool must_speak(const Peer &peer) const
+    {
+        return address_.kind != ListenAddress::Kind::serial && !peer.session.has_spoken();
+    }
+
+    bool anybody_silent() const
+    {
+        return std::any_of(peers_.begin(), peers_.end(), [this](const auto &peer) { return must_speak(*peer); });
+    }
+
+    void close_silent()
+    {
+        const auto now = std::chrono::steady_clock::now();
+        for (const auto &peer : peers_) {
+            if (must_speak(*peer) && now - peer->since > kSilenceMax) {
+                options_.log("a connection said nothing a gateway says; closed");
+                peer->closed = true;
+            }
+        }
     }
 
     void add_peer(Descriptor descriptor)

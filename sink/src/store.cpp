@@ -87,12 +87,19 @@ void check_schema(const Connection &connection, const std::filesystem::path &fil
 Connection &prepare(Connection &connection, const std::filesystem::path &file, std::uint16_t pan_id)
 {
     sqlite3_busy_timeout(connection.get(), kBusyTimeoutMs);
+    /* Nothing of somebody else's database is changed: it is checked first. */
+    const bool is_new = single_integer(connection, "SELECT count(*) FROM sqlite_master") == 0;
+    if (!is_new) {
+        check_schema(connection, file, pan_id);
+    }
+    if (sqlite3_db_readonly(connection.get(), "main") == 1) {
+        throw InputError(file.string(), "mode", "is read-only");
+    }
     connection.execute("PRAGMA journal_mode = WAL");
     connection.execute("PRAGMA synchronous = FULL");
-    if (single_integer(connection, "SELECT count(*) FROM sqlite_master") == 0) {
+    if (is_new) {
         create_schema(connection, pan_id);
     }
-    check_schema(connection, file, pan_id);
     return connection;
 }
 
@@ -124,6 +131,9 @@ struct Store::Database {
 
 Store::Store(const std::filesystem::path &file, std::uint16_t pan_id, Open open, const char *vfs)
 {
+    if (file.empty() || file.string().front() == ':') { /* SQLite's names for databases that are not on disk */
+        throw InputError("--db", "file", "'" + file.string() + "' is no file");
+    }
     const int flags = SQLITE_OPEN_READWRITE | (open == Open::create ? SQLITE_OPEN_CREATE : 0);
     try {
         database_ = std::make_unique<Database>(file, pan_id, flags, vfs);

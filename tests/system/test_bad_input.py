@@ -28,7 +28,7 @@ def refuse(what, command, *mentions, out=None):
     for mention in mentions:
         check(mention in lines[0], f"{what}: does not name {mention}: {lines[0]}")
     if out is not None and out.is_dir():
-        left = [file.name for file in out.iterdir() if file.name in ("summary.json", "cloud.ply", "capture.pcapng")]
+        left = [file.name for file in out.iterdir() if file.name not in ("tarsier-run", "sink.log")]
         check(not left, f"{what}: left {left} behind")
     print(f"{what}: {lines[0]}")
 
@@ -91,7 +91,15 @@ def command_lines(folder, scene):
     (folder / "file").write_text("in the way")
     refuse("out is a file", [EMULATOR, scene / "site.toml", "--out", folder / "file"], "file")
     refuse("out cannot be made", [EMULATOR, scene / "site.toml", "--out", "/proc/tarsier"], "/proc/tarsier")
-    refuse("no sink program", [EMULATOR, scene / "site.toml", "--out", out, "--sink", folder / "nosink"], "nosink")
+    refuse("no sink program", [EMULATOR, scene / "site.toml", "--out", out, "--sink", folder / "nosink"], "nosink", out=out)
+    refuse("a sink that does not answer", [EMULATOR, scene / "site.toml", "--out", out, "--sink", "/bin/true"],
+           "/bin/true", out=out)
+    refuse("seed below 0", [EMULATOR, scene / "site.toml", "--out", out, "--seed", "-1"], "--seed")
+    refuse("too many disparities", run_pair(scene / "left160", scene / "right160", out, "--disparities", "129"),
+           "--disparities")
+    before = (scene / "site.toml").read_bytes()
+    refuse("out is the site's own folder", [EMULATOR, scene / "site.toml", "--out", scene], "site.toml", "--out")
+    check((scene / "site.toml").read_bytes() == before, "the site's own folder was changed")
 
 
 def sites(folder, scene):
@@ -103,6 +111,11 @@ def sites(folder, scene):
              ("negative baseline", r"baseline_mm = 160", "baseline_mm = -160", "baseline_mm"),
              ("two gateways", r'role = "relay"', 'role = "gateway"', "gateway"),
              ("unknown role", r'role = "relay"', 'role = "router"', "role"),
+             ("no recordings", r'frames = "left160"\n', "", "node 3: frames"),
+             ("no second camera", r'frames_right = "right320"\n', "", "frames_right"),
+             ("watch period too long", r"watch_period_ms = 1000", "watch_period_ms = 4294968", "watch_period_ms"),
+             ("a line without end", r"\[site\]", "a" + ".a" * 60000 + " = 1\n[site]", "longer"),
+             ("no ground truth", r'truth = "truth160"', 'truth = "nowhere"', "nowhere"),
              ("missing recordings", r'frames = "left160"', 'frames = "nowhere"', "nowhere"))
     for name, pattern, replacement, mention in edits:
         file = with_site(scene, name.replace(" ", "_") + ".toml", pattern, replacement)
@@ -143,6 +156,12 @@ def keys(folder, scene):
     refuse("no hex key", sink(with_keys("nohex.toml", re.sub(r'link_key = "..', 'link_key = "zz', text))), "link_key")
     refuse("readable keys", sink(with_keys("open.toml", text, 0o644)), "open.toml")
     check(not (folder / "k.db").exists(), "a refused key file left a database")
+    memory = sink(folder / "good/keys.toml")
+    memory[memory.index("--db") + 1] = ":memory:"
+    refuse("a database not on disk", memory, ":memory:")
+    (folder / "text.db").write_text("no database at all, but long enough to be read as one" * 20)
+    memory[memory.index(":memory:")] = folder / "text.db"
+    refuse("a database that is none", memory, "text.db")
 
 
 with tempfile.TemporaryDirectory() as name:

@@ -25,19 +25,29 @@ static void print_number(size_t number)
 
 static int print_plan(enum tsr_role role, const struct size *size)
 {
+    static const struct tsr_route kToWing = {2, 2};
     struct tsr_node_config config = {0};
     config.role = role;
     config.address = 1;
-    config.partner = 2;
+    config.partner = role == TSR_ROLE_LEAD || role == TSR_ROLE_WING ? 2 : TSR_ADDRESS_NONE;
     config.channel = 15;
-    config.routes.parent = role == TSR_ROLE_GATEWAY ? TSR_ADDRESS_NONE : 3;
+    config.routes.parent = role == TSR_ROLE_GATEWAY ? TSR_ADDRESS_NONE : role == TSR_ROLE_WING ? 2 : 3;
+    if (role == TSR_ROLE_LEAD) {
+        config.routes.descendants = &kToWing;
+        config.routes.descendant_count = 1;
+    }
     config.watch_period_us = 1;
     config.change.width = config.match.width = config.similarity.width = size->width;
     config.change.height = config.match.height = config.similarity.height = size->height;
     config.match.disparities = size->disparities;
     config.step_log2 = 2;
     struct tsr_memory_plan plan;
-    if (tsr_node_plan_memory(&config, &plan) != TSR_OK) {
+    const char *field = NULL;
+    if (tsr_node_check(&config, &field) != TSR_OK || tsr_node_plan_memory(&config, &plan) != TSR_OK) {
+        tsr_mps2_print(tsr_role_name(role));
+        tsr_mps2_print(": refused field: ");
+        tsr_mps2_print(field != NULL ? field : "none");
+        tsr_mps2_print("\n");
         return 1;
     }
     tsr_mps2_print(tsr_role_name(role));

@@ -47,12 +47,12 @@ NodeIndex index_nodes(const Site &site)
         if (const std::string fault = fault_in_name(node.name); !fault.empty()) {
             refuse_node(site, node, "name", fault);
         }
-        if (node.watch_period_ms < 1) {
-            refuse_node(site, node, "watch_period_ms", "is 0");
+        if (node.watch_period_ms < 1 || node.watch_period_ms > kWatchPeriodMsMax) {
+            refuse_node(site, node, "watch_period_ms", "is outside 1.." + std::to_string(kWatchPeriodMsMax));
         }
         for (const double metres : node.position_m) {
-            if (!std::isfinite(metres)) {
-                refuse_node(site, node, "position_m", "is not finite");
+            if (!(std::abs(metres) <= kPositionMaxM)) {
+                refuse_node(site, node, "position_m", "is farther than 1000 km");
             }
         }
         if (!node.frames.empty() && !is_camera(node.role)) {
@@ -174,10 +174,10 @@ void check_pair_numbers(const Site &site, const SitePair &pair)
                     "is outside -" + std::to_string(pair.width - pair.disparities) + ".." +
                         std::to_string(pair.width - pair.disparities) + ", width - disparities");
     }
-    if (!(pair.focal_px > 0) || !std::isfinite(pair.focal_px)) {
+    if (!(pair.focal_px >= 1 && pair.focal_px <= 1e6)) {
         refuse_pair(site, pair, "focal_px", "is not positive");
     }
-    if (!(pair.baseline_mm > 0) || !std::isfinite(pair.baseline_mm)) {
+    if (!(pair.baseline_mm >= 0.001 && pair.baseline_mm <= 1e9)) {
         refuse_pair(site, pair, "baseline_mm", "is not positive");
     }
     if (!(std::abs(pair.d0_px) <= 2047)) {

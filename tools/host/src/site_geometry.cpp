@@ -35,7 +35,7 @@ std::string one_decimal(double value)
 Eigen::Matrix3d checked_rotation(const Site &site, const SitePair &pair, const SitePose &pose, const std::string &side)
 {
     for (const double metres : pose.position_m) {
-        if (!std::isfinite(metres)) {
+        if (!(std::abs(metres) <= kPositionMaxM)) {
             refuse_pair(site, pair, side + ".position_m", "is not finite");
         }
     }

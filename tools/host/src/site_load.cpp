@@ -75,7 +75,7 @@ SiteNode read_node(TomlFields &fields)
     node.frames = fields.string("frames", "");
     node.frames_right = fields.string("frames_right", "");
     node.watch_period_ms =
-        static_cast<std::uint32_t>(fields.integer("watch_period_ms", 1, 86'400'000, node.watch_period_ms));
+        static_cast<std::uint32_t>(fields.integer("watch_period_ms", 1, kWatchPeriodMsMax, node.watch_period_ms));
     fields.refuse_unknown();
     return node;
 }

@@ -13,10 +13,30 @@ namespace
 
 constexpr std::size_t kTomlLenMax = std::size_t{16} << 20;
 
-/* The parser recurses into nested brackets; a file of brackets must not exhaust the stack. toml++ has its own
- * limit (TOML_MAX_NESTED_VALUES, 256), so nothing more is needed here. */
+/* The parser recurses into brackets and dotted keys, and a hostile file must not exhaust the stack: toml++ limits the
+ * brackets (TOML_MAX_NESTED_VALUES, 256), the length of a line limits the dots. */
+constexpr std::size_t kLineLenMax = 4096;
+
+void check_lines(const std::string &file, const std::string &text)
+{
+    std::size_t number = 1;
+    std::size_t start = 0;
+    for (std::size_t end = 0; end <= text.size(); end++) {
+        if (end < text.size() && text[end] != '\n') {
+            continue;
+        }
+        if (end - start > kLineLenMax) {
+            throw InputError(file + ":" + std::to_string(number), "TOML",
+                             "the line is longer than " + std::to_string(kLineLenMax) + " bytes");
+        }
+        start = end + 1;
+        number++;
+    }
+}
+
 toml::table parse(const std::string &file, const std::string &text)
 {
+    check_lines(file, text);
     try {
         return toml::parse(text, std::string_view(file));
     } catch (const toml::parse_error &error) {

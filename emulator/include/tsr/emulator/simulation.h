@@ -37,7 +37,10 @@ class Simulation
     /* After the last frame: time to deliver what is under way. */
     static constexpr std::uint64_t kPatienceUs = 120'000'000;
 
-    using Progress = std::function<void(std::uint64_t now_us, std::uint64_t end_us)>;
+    /* Called after each event; false ends the run. */
+    using Progress = std::function<bool(std::uint64_t now_us, std::uint64_t end_us)>;
+    /* Watching is most of a long run's timeline; past this many changes only the rest is noted. */
+    static constexpr std::size_t kWatchingNotedMax = 20'000;
 
     /* site, keys and sink are kept. Throws InputError for recordings or
      * configurations that cannot be run. */
@@ -67,6 +70,8 @@ class Simulation
     std::unique_ptr<Air> air_;
     std::vector<std::unique_ptr<EmulatedNode>> nodes_;
     EmulatedNode *gateway_ = nullptr;
+    void note(const PhaseChange &change);
+
     std::vector<PhaseChange> timeline_;
     std::vector<AirTally> air_tallies_;
     PcapngCapture capture_;

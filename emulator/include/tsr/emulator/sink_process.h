@@ -71,6 +71,7 @@ class SinkProcess
     int socket_ = -1;
     pid_t pid_ = -1;
     unsigned restarts_ = 0;
+    unsigned failures_ = 0; /* since the last answer */
 };
 
 } // namespace tsr

@@ -39,6 +39,8 @@ class LinkSession
 {
   public:
     LinkSession() { tsr_link_decoder_init(&decoder_); }
+    /* Whether one good frame has come: a gateway says HELLO at once. */
+    bool has_spoken() const { return decoder_.frames > 0; }
     /* Bytes waiting to be written to this connection. */
     std::vector<std::uint8_t> &outgoing() { return outgoing_; }
 

@@ -28,6 +28,8 @@ namespace tsr
 
 inline constexpr std::uint16_t kNodeNone = 0; /* no such node: a gateway's parent, a binocular pair's wing */
 inline constexpr std::uint16_t kNodeIdMax = 0xfffd;
+inline constexpr std::uint32_t kWatchPeriodMsMax = 3'600'000; /* in us it fits the firmware's 32 bits */
+inline constexpr double kPositionMaxM = 1e6;                  /* of any coordinate */
 
 enum class Role {
     gateway,  /* the root of the tree; joined to the sink by the gateway link */

@@ -1,0 +1,26 @@
+/*
+ * All that can be refused before a run begins: so that bad input is one line
+ * and nothing else, not a run that breaks off.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_EMULATOR_PREFLIGHT_H
+#define TSR_EMULATOR_PREFLIGHT_H
+
+#include "tsr/host/keys.h"
+#include "tsr/host/site.h"
+
+namespace tsr
+{
+
+/* Longest recording: 24 hours of virtual time. */
+inline constexpr std::uint64_t kRecordingMaxMs = 24ull * 3600 * 1000;
+
+/* Every camera has frames, every frame can be read, recordings end in time,
+ * ground truth fits its pair, and the firmware takes each node's
+ * configuration. Throws InputError. */
+void check_run(const Site &site, const KeyRing &keys);
+
+} // namespace tsr
+
+#endif

@@ -1,0 +1,91 @@
+/*
+ * Checks before a run.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include "tsr/emulator/preflight.h"
+
+#include <string>
+
+#include "tsr/emulator/node_setup.h"
+#include "tsr/host/input_error.h"
+#include "tsr/host/pfm.h"
+#include "tsr/host/recorded_frames.h"
+
+namespace tsr
+{
+
+namespace
+{
+
+bool is_camera(Role role)
+{
+    return role == Role::lead || role == Role::wing || role == Role::binocular;
+}
+
+void require_frames(const Site &site, const SiteNode &node)
+{
+    const bool right_missing = node.role == Role::binocular && node.frames_right.empty();
+    if (is_camera(node.role) && (node.frames.empty() || right_missing)) {
+        const std::string place =
+            node.line > 0 ? site.file.string() + ":" + std::to_string(node.line) : site.file.string();
+        throw InputError(place,
+                         "node " + std::to_string(node.id) + ": " + (node.frames.empty() ? "frames" : "frames_right"),
+                         "is missing; the emulator plays recordings");
+    }
+}
+
+void check_frames(const std::filesystem::path &folder, std::uint32_t period_ms)
+{
+    RecordedFrames frames(folder, period_ms);
+    if (frames.time_ms(frames.count() - 1) > kRecordingMaxMs) {
+        throw InputError(folder.string(), "times", "the recording is longer than 24 hours");
+    }
+    for (std::size_t i = 0; i < frames.count(); ++i) {
+        frames.frame(i);
+    }
+}
+
+void check_truth(const Site &site, const SitePair &pair)
+{
+    const std::filesystem::path folder = site.resolve(pair.truth);
+    std::error_code error;
+    std::filesystem::directory_iterator files(folder, error);
+    if (error) {
+        throw InputError(folder.string(), "truth", error.message());
+    }
+    for (const auto &entry : files) {
+        if (entry.path().extension() != ".pfm") {
+            continue;
+        }
+        const FloatImage image = read_pfm(entry.path());
+        if (image.width != pair.width || image.height != pair.height) {
+            throw InputError(entry.path().string(), "size", "is not that of pair '" + pair.name + "'");
+        }
+    }
+}
+
+} // namespace
+
+void check_run(const Site &site, const KeyRing &keys)
+{
+    for (const SiteNode &node : site.nodes) {
+        require_frames(site, node);
+        set_up_node(site, node, keys);
+    }
+    check_recordings(site);
+    for (const SiteNode &node : site.nodes) {
+        for (const auto &folder : {node.frames, node.frames_right}) {
+            if (!folder.empty()) {
+                check_frames(site.resolve(folder), node.watch_period_ms);
+            }
+        }
+    }
+    for (const SitePair &pair : site.pairs) {
+        if (!pair.truth.empty()) {
+            check_truth(site, pair);
+        }
+    }
+}
+
+} // namespace tsr
