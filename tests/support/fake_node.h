@@ -159,6 +159,9 @@ static inline enum tsr_status fake_node_start(struct fake_node *fake, const stru
         return status;
     }
     fake->arena = plan.total > 0 ? (uint8_t *)malloc(plan.total) : NULL; /* exact, for the sanitizer */
+    if (plan.total > 0 && fake->arena == NULL) {
+        return TSR_ERR_NOBUF; /* the machine's, not the node's */
+    }
     const struct tsr_node_hal hal = fake_hal(fake);
     status = tsr_node_init(&fake->node, config, &hal, fake->arena, plan.total, fake->now_us);
     tsr_node_on_timer(&fake->node, fake->now_us);

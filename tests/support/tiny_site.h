@@ -24,6 +24,7 @@ extern "C" {
 #include "tsr/node/node_state.h"
 }
 #include "test_host_site.h"
+#include "tiny_site_parts.h"
 #include "tsr/emulator/event_queue.h"
 #include "tsr/emulator/node_setup.h"
 #include "tsr/hal/air.h"
@@ -39,62 +40,7 @@ inline constexpr std::uint64_t kStepUs = 20;         /* what a step with work ta
 inline constexpr std::uint64_t kFrameStepUs = 500;   /* the longest that a frame or 256 sealed bytes take */
 inline constexpr std::uint64_t kPortUs = 1'500;      /* gateway to sink or back */
 
-enum class FaultKind {
-    none,
-    lose_frame,   /* data frame n on air reaches nobody */
-    double_frame, /* it arrives twice */
-    lose_ack,     /* acknowledgement n on air reaches nobody */
-    camera_call,  /* capture() n is refused */
-    camera_done,  /* capture n ends with an error */
-    transmit,     /* transmit() n of any radio is refused */
-    port_write,   /* write() n is refused */
-    port_damage,  /* write() n arrives with a changed byte */
-    lose_answer,  /* what the sink writes the n-th time is lost */
-    double_answer,
-    kind_count
-};
-
-inline const char *fault_name(FaultKind kind)
-{
-    static constexpr std::array<const char *, static_cast<std::size_t>(FaultKind::kind_count)> kNames = {
-        "none",     "lose_frame", "double_frame", "lose_ack",    "camera_call",  "camera_done",
-        "transmit", "port_write", "port_damage",  "lose_answer", "double_answer"};
-    return kNames.at(static_cast<std::size_t>(kind));
-}
-
-struct Fault {
-    FaultKind kind = FaultKind::none;
-    std::uint64_t n = 0;
-};
-
 class TinySite;
-
-/* What a camera sees: blocks of gray, a plane with a box in front, other ones after the change. */
-struct TinyScene {
-    static std::uint8_t texture(unsigned x, unsigned y, unsigned version)
-    {
-        std::uint32_t hash = (x / 2 * 73856093u) ^ (y / 2 * 19349663u) ^ (version * 83492791u);
-        hash = (hash ^ hash >> 13) * 0x5bd1e995u;
-        return static_cast<std::uint8_t>(60 + (hash >> 24) % 120);
-    }
-    static unsigned disparity(unsigned x, unsigned y, unsigned version)
-    {
-        const bool box = x >= 12 && x < 26 && y >= 6 && y < 20;
-        return version == 0 ? 3u : box ? 10u : 5u;
-    }
-    static std::uint8_t pixel(bool right, unsigned x, unsigned y, unsigned version)
-    {
-        if (!right) {
-            return texture(x, y, version);
-        }
-        for (const unsigned d : {10u, 5u, 3u}) {
-            if (disparity(x + d, y, version) == d) {
-                return texture(x + d, y, version);
-            }
-        }
-        return texture(x, y, version);
-    }
-};
 
 class TinyCamera
 {
@@ -162,8 +108,9 @@ class TinySite
 {
   public:
     explicit TinySite(std::vector<Fault> faults = {}, std::uint64_t seed = 1)
-        : site(small_site()), seed(seed), keys(derive_test_keys(7, site)), store(":memory:", site.pan_id),
-          receiver(site, keys, store), server(receiver, site.pan_id),
+        : site(small_site()), seed(seed), keys(derive_test_keys(7, site)),
+          store(fresh_database(), site.pan_id, Store::Open::create, "memdb"), receiver(site, keys, store),
+          server(receiver, site.pan_id),
           air(AirModel{},
               {[this] { return queue.now_us(); },
                [this](std::uint64_t at_us, std::function<void()> action) { queue.at(at_us, std::move(action)); }}),
@@ -234,6 +181,12 @@ class TinySite
     std::function<bool(const AirFrame &)> also_lost; /* may be empty */
 
   private:
+    /* A name of its own for SQLite's VFS in memory, which shares a file among those who name it. */
+    static std::string fresh_database()
+    {
+        static int count = 0;
+        return "/tiny" + std::to_string(count++);
+    }
     AirFate judge(const AirFrame &frame)
     {
         if (frame.psdu_len == TSR_FRAME_ACK_LEN) {

@@ -33,10 +33,11 @@
 
 /* The capture that a WAKE asks for and a VIEW answers. Both boards capture
  * TSR_CAPTURE_DELAY_US after the end of the WAKE frame that was acknowledged.
- * If only the acknowledgement was lost, the wing must hear the next WAKE before
- * its camera has begun: 864 us to miss the acknowledgement, at most 2240 us of
- * back-off, 320 us to sense and turn around, 1920 us of frame. */
-#define TSR_CAPTURE_DELAY_US 8000u
+ * If only the acknowledgement was lost, the wing must hear a further WAKE before
+ * its camera has begun. One more attempt takes 864 us to miss the acknowledgement,
+ * at most 2240 us of back-off, 320 us to sense and turn around and 1920 us of
+ * frame: three such fit, or one on a busy channel. */
+#define TSR_CAPTURE_DELAY_US 20000u
 /* How long before the instant a board orders its camera, and the largest
  * lateness at which a capture is still of that instant. */
 #define TSR_CAPTURE_ORDER_US 1000u
