@@ -64,10 +64,12 @@ Json drops_json(const EmulatedNode &node)
 {
     const tsr_node_counters &counters = node.counters();
     const tsr_mac_counters &mac = node.mac_counters();
-    return {{"route", counters.dropped_route},      {"format", counters.dropped_format},
-            {"foreign", counters.dropped_foreign},  {"auth", counters.dropped_auth + mac.dropped_auth},
-            {"replay", counters.dropped_replay},    {"frame_format", mac.dropped_format},
-            {"frame_repeated", mac.dropped_replay}, {"frame_queue", mac.dropped_queue}};
+    return {{"route", counters.dropped_route},          {"format", counters.dropped_format},
+            {"foreign", counters.dropped_foreign},      {"auth", counters.dropped_auth + mac.dropped_auth},
+            {"replay", counters.dropped_replay},        {"frame_format", mac.dropped_format},
+            {"frame_repeated", mac.dropped_replay},     {"frame_queue", mac.dropped_queue},
+            {"frame_neighbour", mac.dropped_neighbour}, {"frame_unsealed", mac.unsealed},
+            {"queue", counters.dropped_queue}};
 }
 
 Json node_json(const EmulatedNode &node, const AirTally &air, std::size_t maps_received)

@@ -1,0 +1,24 @@
+"""The gateway link stores the same maps over TCP and over a serial port as over a Unix socket."""
+# SPDX-License-Identifier: Apache-2.0
+import os
+import pathlib
+import sys
+import tempfile
+
+SUPPORT = pathlib.Path(__file__).resolve().parents[1] / "support"
+sys.path.insert(0, str(SUPPORT))
+from run_site import check, emulate, make_scene, stored_maps
+
+with tempfile.TemporaryDirectory() as folder:
+    folder = pathlib.Path(folder)
+    site = make_scene("test_link_carriers", folder / "scene")
+    emulate(site, folder / "unix")
+    for carrier, named in (("tcp", "127.0.0.1"), ("serial", "/dev/pts/")):
+        os.environ["TSR_LINK"] = carrier
+        out = folder / carrier
+        emulate(site, out, "--sink", SUPPORT / "carried_sink.py")
+        check(named in (out / "sink.log").read_text(), f"the sink did not listen on {carrier}")
+        check(stored_maps(out) == stored_maps(folder / "unix"), f"other maps over {carrier}")
+        check((out / "capture.pcapng").read_bytes() == (folder / "unix/capture.pcapng").read_bytes(),
+              f"other frames on air over {carrier}")
+        print(f"{carrier}: {len(stored_maps(out))} maps")
