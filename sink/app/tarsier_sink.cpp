@@ -6,6 +6,7 @@
  * SPDX-License-Identifier: Apache-2.0
  */
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -53,32 +54,34 @@ void log_map(const tsr::MapReport &map)
                  map.mse_px2 ? fmt::format(", MSE {:.4f} px^2", *map.mse_px2) : "");
 }
 
-/* Everything that can be refused is read before the database is made. */
+/* Everything that can be refused is read and opened before the database is made. */
 struct Entrance {
     tsr::KeyRing keys;
-    tsr::ListenAddress address;
-    bool once = false;
+    std::unique_ptr<tsr::Gateways> gateways;
 };
 
 Entrance open_entrance(const Options &options, const tsr::Site &site)
 {
-    Entrance entrance{tsr::load_keys(options.keys), tsr::parse_listen_address(options.listen), options.once};
+    Entrance entrance;
+    entrance.keys = tsr::load_keys(options.keys);
     tsr::check_keys(entrance.keys, site, options.keys);
-    if (entrance.keys.test && entrance.address.kind == tsr::ListenAddress::Kind::serial) {
+    const tsr::ListenAddress address = tsr::parse_listen_address(options.listen);
+    if (entrance.keys.test && address.kind == tsr::ListenAddress::Kind::serial) {
         throw tsr::InputError(options.keys.string(), "test", "test keys are refused for a board on a serial port");
     }
+    tsr::GatewayOptions gateway;
+    gateway.once = options.once;
+    gateway.log = [](const std::string &line) { spdlog::info("{}", line); };
+    entrance.gateways = std::make_unique<tsr::Gateways>(address, gateway);
     return entrance;
 }
 
-tsr::SessionNumbers receive(const Entrance &entrance, const tsr::Site &site, tsr::Store &store)
+tsr::SessionNumbers receive(Entrance &entrance, const tsr::Site &site, tsr::Store &store)
 {
     tsr::Receiver receiver(site, entrance.keys, store);
     receiver.on_map(log_map);
     tsr::LinkServer server(receiver, site.pan_id);
-    tsr::GatewayOptions gateway;
-    gateway.once = entrance.once;
-    gateway.log = [](const std::string &line) { spdlog::info("{}", line); };
-    tsr::serve_gateways(entrance.address, server, gateway);
+    entrance.gateways->serve(server);
     return {receiver.tally(), server.counts(), receiver.repeated()};
 }
 

@@ -56,11 +56,13 @@ Descriptor open_signals()
     return descriptor;
 }
 
-class Loop
+} // namespace
+
+class Gateways::Loop
 {
   public:
-    Loop(const ListenAddress &address, LinkServer &server, const GatewayOptions &options)
-        : address_(address), server_(server), options_(options), signals_(open_signals())
+    Loop(const ListenAddress &address, const GatewayOptions &options)
+        : address_(address), options_(options), signals_(open_signals())
     {
         if (address.kind == ListenAddress::Kind::serial) {
             add_peer(open_serial(address));
@@ -77,7 +79,7 @@ class Loop
         }
     }
 
-    void run()
+    void run(LinkServer &server)
     {
         options_.log("listening at " + address_.place);
         while (!finished()) {
@@ -89,7 +91,7 @@ class Loop
             if (waits[1].revents != 0) {
                 accept_peer();
             }
-            read_all(waits);
+            read_all(server, waits);
             write_all();
             close_silent();
             drop_closed();
@@ -163,7 +165,7 @@ class Loop
         add_peer(std::move(descriptor));
     }
 
-    void read_all(const std::vector<pollfd> &waits)
+    void read_all(LinkServer &server, const std::vector<pollfd> &waits)
     {
         std::vector<LinkServer::Input> inputs;
         for (std::size_t i = 0; i + 2 < waits.size(); i++) { /* a peer accepted just now waits for the next round */
@@ -178,7 +180,7 @@ class Loop
                 peer.closed = true;
             }
         }
-        server_.process(inputs);
+        server.process(inputs);
     }
 
     void write_all()
@@ -209,9 +211,8 @@ class Loop
         }
     }
 
-    const ListenAddress &address_;
-    LinkServer &server_;
-    const GatewayOptions &options_;
+    ListenAddress address_;
+    GatewayOptions options_;
     Descriptor signals_;
     Descriptor listener_;
     std::vector<std::unique_ptr<Peer>> peers_;
@@ -219,12 +220,16 @@ class Loop
     bool served_ = false;
 };
 
-} // namespace
-
-void serve_gateways(const ListenAddress &address, LinkServer &server, const GatewayOptions &options)
+Gateways::Gateways(const ListenAddress &address, const GatewayOptions &options)
+    : loop_(std::make_unique<Loop>(address, options))
 {
-    const auto loop = std::make_unique<Loop>(address, server, options); /* too large for some stacks */
-    loop->run();
+}
+
+Gateways::~Gateways() = default;
+
+void Gateways::serve(LinkServer &server)
+{
+    loop_->run(server);
 }
 
 } // namespace tsr

@@ -155,7 +155,10 @@ def keys(folder, scene):
     refuse("short key", sink(with_keys("short.toml", short)), "short.toml", "link_key")
     refuse("no hex key", sink(with_keys("nohex.toml", re.sub(r'link_key = "..', 'link_key = "zz', text))), "link_key")
     refuse("readable keys", sink(with_keys("open.toml", text, 0o644)), "open.toml")
-    check(not (folder / "k.db").exists(), "a refused key file left a database")
+    nowhere = sink(folder / "good/keys.toml")
+    nowhere[nowhere.index("--listen") + 1] = f"unix:{folder}/no/such/folder/socket"
+    refuse("a socket nowhere", nowhere, "no/such/folder", "bind")
+    check(not (folder / "k.db").exists(), "a refused key file or address left a database")
     memory = sink(folder / "good/keys.toml")
     memory[memory.index("--db") + 1] = ":memory:"
     refuse("a database not on disk", memory, ":memory:")

@@ -209,7 +209,7 @@ TEST_F(SinkLink, ServesAUnixSocketOnce)
     const ListenAddress address = parse_listen_address("unix:" + path.string());
     GatewayOptions options;
     options.once = true;
-    std::thread thread([&] { serve_gateways(address, server, options); });
+    std::thread thread([&] { Gateways(address, options).serve(server); });
     const int descriptor = connect_to(path);
     ASSERT_GE(descriptor, 0);
     Bytes received;
@@ -240,15 +240,15 @@ TEST_F(SinkLink, ASocketInUseIsRefusedAndAStaleOneReplaced)
     ASSERT_EQ(::bind(other, reinterpret_cast<sockaddr *>(&name), sizeof name), 0);
     ASSERT_EQ(::listen(other, 1), 0);
     const ListenAddress address = parse_listen_address("unix:" + path.string());
-    EXPECT_REFUSED(serve_gateways(address, server, {}), "link.sock: path: another sink listens here");
+    EXPECT_REFUSED(Gateways(address, {}), "link.sock: path: another sink listens here");
     ::close(other); /* the file stays behind */
     GatewayOptions options;
     options.once = true;
-    std::thread thread([&] { serve_gateways(address, server, options); });
+    std::thread thread([&] { Gateways(address, options).serve(server); });
     ::close(connect_to(path));
     thread.join();
     const auto file = folder.put("file", "x");
-    EXPECT_REFUSED(serve_gateways(parse_listen_address("unix:" + file.string()), server, {}), "is not a socket");
+    EXPECT_REFUSED(Gateways(parse_listen_address("unix:" + file.string()), {}), "is not a socket");
 }
 
 TEST(SinkListenAddress, ReadsAndRefuses)

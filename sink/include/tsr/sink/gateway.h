@@ -9,6 +9,7 @@
 #define TSR_SINK_GATEWAY_H
 
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "tsr/sink/link_session.h"
@@ -22,12 +23,24 @@ struct GatewayOptions {
     std::function<void(const std::string &)> log = [](const std::string &) {};
 };
 
-/*
- * Serve until SIGINT or SIGTERM arrives (both are blocked from here on and
- * taken from a descriptor), the serial port goes away, or options.once says so.
- * Throws InputError if address cannot be opened.
- */
-void serve_gateways(const ListenAddress &address, LinkServer &server, const GatewayOptions &options);
+/* An opened address: it can be had before anything else of a sink is made. */
+class Gateways
+{
+  public:
+    /* Throws InputError if address cannot be opened. SIGINT and SIGTERM are
+     * blocked from here on and taken from a descriptor. */
+    Gateways(const ListenAddress &address, const GatewayOptions &options);
+    ~Gateways();
+    Gateways(const Gateways &) = delete;
+    Gateways &operator=(const Gateways &) = delete;
+
+    /* Serve until SIGINT or SIGTERM arrives, the serial port goes away, or options.once says so. */
+    void serve(LinkServer &server);
+
+  private:
+    class Loop;
+    std::unique_ptr<Loop> loop_; /* too large for some stacks */
+};
 
 } // namespace tsr
 
