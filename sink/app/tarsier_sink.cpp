@@ -85,14 +85,33 @@ tsr::SessionNumbers receive(Entrance &entrance, const tsr::Site &site, tsr::Stor
     return {receiver.tally(), server.counts(), receiver.repeated()};
 }
 
-void make_out(const std::filesystem::path &out)
+/* The folder of the results: made at once, so that it is not refused after hours, and gone again if anything else is
+ * refused. */
+class OutFolder
 {
-    std::error_code error;
-    std::filesystem::create_directories(out, error);
-    if (error) {
-        throw tsr::InputError(out.string(), "--out", error.message());
+  public:
+    explicit OutFolder(const std::filesystem::path &folder) : folder_(folder)
+    {
+        std::error_code error;
+        made_ = std::filesystem::create_directories(folder_, error);
+        if (error) {
+            throw tsr::InputError(folder_.string(), "--out", error.message());
+        }
     }
-}
+    OutFolder(const OutFolder &) = delete;
+    OutFolder &operator=(const OutFolder &) = delete;
+    ~OutFolder()
+    {
+        std::error_code ignored;
+        if (made_) {
+            std::filesystem::remove(folder_, ignored); /* only an empty folder goes */
+        }
+    }
+
+  private:
+    std::filesystem::path folder_;
+    bool made_ = false;
+};
 
 int run(const Options &options)
 {
@@ -107,7 +126,7 @@ int run(const Options &options)
     if (!options.export_only) {
         entrance = open_entrance(options, site);
     }
-    make_out(options.out);
+    const OutFolder out(options.out);
     tsr::Store store(options.database, site.pan_id,
                      options.export_only ? tsr::Store::Open::existing : tsr::Store::Open::create);
     const tsr::SessionNumbers session = entrance ? receive(*entrance, site, store) : tsr::SessionNumbers{};
