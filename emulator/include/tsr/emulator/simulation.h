@@ -34,6 +34,8 @@ class Simulation
     /* The sink's answer takes this long in virtual time, whatever it takes in
      * truth. */
     static constexpr std::uint64_t kSinkAnswerUs = 2000;
+    /* Frames watched until the first map is on its way: four that teach the background, the fifth, and one to spare. */
+    static constexpr std::uint64_t kFirstMapFrames = 6;
     /* After the last frame: time to deliver what is under way. */
     static constexpr std::uint64_t kPatienceUs = 120'000'000;
 
