@@ -163,10 +163,6 @@ void print_result(const fs::path &out, const nlohmann::ordered_json &summary)
                     pair.at("frames_woken").get<int>(), pair.at("maps_made").get<int>(),
                     pair.at("maps_withheld").get<int>(), pair.at("maps_sent").get<int>(),
                     pair.at("maps_received").get<int>(), pair.at("maps_lost").get<int>());
-        if (pair.at("maps_made").get<int>() == 0) {
-            std::printf(
-                "  no map: a node learns its background from four frames and makes its first map at the fifth\n");
-        }
         for (const auto &map : pair.at("maps")) {
             if (map.contains("error")) {
                 std::printf("  map at %.1f s: median error %.3f px, %.1f mm; %.1f %% of the pixels correct\n",

@@ -20,3 +20,11 @@ with tempfile.TemporaryDirectory() as folder:
     print(pair["maps_received"], "maps")
     check(pair["maps_received"] >= 2 and pair["maps_lost"] == 0, f"{pair}")
     check((folder / "out/cloud.ply").stat().st_size > 10000, "no cloud")
+
+    # A single picture of each side is what anybody tries first: it gives a map as well.
+    for side in ("left", "right"):
+        (folder / side).mkdir()
+        (folder / side / "000.pgm").write_bytes((folder / f"scene/{side}160/000.pgm").read_bytes())
+    subprocess.run([BUILD / "bin/tarsier-emulator", "--pair", folder / "left", folder / "right", "--focal-px", "466",
+                    "--baseline-mm", "160", "--out", folder / "one"], check=True, capture_output=True)
+    check(json.loads((folder / "one/summary.json").read_text())["totals"]["maps_received"] == 1, "no map of one pair")
