@@ -185,6 +185,6 @@ class SinkProgram(unittest.TestCase):
 
 if __name__ == "__main__":
     if not PROGRAM.exists():
-        print(f"{PROGRAM} is not built: skipped")
+        print(f"tarsier skipped: test_sink_program: {PROGRAM} is not built")
         sys.exit(77)
     unittest.main()

@@ -13,7 +13,7 @@ import sys
 try:
     import numpy as np
 except ImportError:
-    print("skipped: numpy is not installed")
+    print("tarsier skipped: test_codec_decoder: python3-numpy is not installed")
     sys.exit(77)
 
 SOURCE = pathlib.Path(os.environ.get("TSR_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
