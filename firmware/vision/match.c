@@ -21,7 +21,8 @@
 #define DISPARITIES_DEFAULT 32
 #define WINDOW_DEFAULT 9
 #define WINDOW_MIN 5
-#define CAP_ROOM 127 /* cap * window <= 127: column sums of 2 cap fit 8 bits */
+#define CAP_ROOM 63 /* cap * window <= 63: column sums of 2 cap, and their differences, fit 8 bits with a sign */
+#define SAD8_CAP_ROOM 127 /* cap * window^2 <= 127: window sums fit 8 bits */
 #define UNIQUENESS_DEFAULT 15
 #define UNIQUENESS_MAX 100
 #define TEXTURE_DEFAULT 1
@@ -33,15 +34,24 @@ static uint8_t value_or(uint8_t value, uint8_t fallback)
     return value != 0 ? value : fallback;
 }
 
+/* The largest cap whose sums fit; 0 if none does. */
+static uint8_t cap_max(const struct tsr_match_config *config)
+{
+    int by_columns = CAP_ROOM / config->window;
+    int by_window = SAD8_CAP_ROOM / (config->window * config->window);
+    return (uint8_t)(config->mode == TSR_MATCH_SAD8 && by_window < by_columns ? by_window : by_columns);
+}
+
 static struct tsr_match_config resolve(const struct tsr_match_config *config)
 {
     struct tsr_match_config resolved = *config;
     resolved.disparities = config->disparities != 0 ? config->disparities : DISPARITIES_DEFAULT;
     resolved.window = value_or(config->window, WINDOW_DEFAULT);
-    resolved.prefilter_cap = value_or(config->prefilter_cap, (uint8_t)(CAP_ROOM / resolved.window));
+    resolved.prefilter_cap = value_or(config->prefilter_cap, cap_max(&resolved));
     resolved.uniqueness_percent = value_or(config->uniqueness_percent, UNIQUENESS_DEFAULT);
     resolved.texture_min = value_or(config->texture_min, TEXTURE_DEFAULT);
     resolved.lr_tolerance_px = value_or(config->lr_tolerance_px, TOLERANCE_DEFAULT);
+    resolved.kernel = config->kernel != NULL ? config->kernel : tsr_match_kernel_at(0);
     return resolved;
 }
 
@@ -67,7 +77,13 @@ static const char *bad_field(const struct tsr_match_config *config)
         config->window > config->height) {
         return "window";
     }
-    if (config->prefilter_cap * config->window > CAP_ROOM) {
+    if (config->mode > TSR_MATCH_SAD8) {
+        return "mode";
+    }
+    if (cap_max(config) == 0) {
+        return "window";
+    }
+    if (config->prefilter_cap > cap_max(config)) {
         return "prefilter_cap";
     }
     if (is_above(config->uniqueness_percent, UNIQUENESS_MAX)) {
@@ -144,10 +160,9 @@ struct tsr_match_scratch tsr_match_share_scratch(const struct tsr_match *match)
     struct tsr_match_scratch scratch;
     scratch.sums = (int16_t *)(void *)match->scratch;
     scratch.offered = scratch.sums + disparities;
-    scratch.columns = (uint8_t *)(scratch.offered + disparities);
-    scratch.right_cost = (uint16_t *)(void *)(scratch.columns + width * disparities);
-    scratch.right_d = (uint8_t *)(scratch.right_cost + width);
-    scratch.left_d = scratch.right_d + width;
+    scratch.columns = (uint8_t *)(scratch.offered + disparities) + TSR_MATCH_EDGE_ROOM;
+    scratch.claims = (uint16_t *)(void *)(scratch.columns + width * disparities);
+    scratch.left_d = (uint8_t *)(scratch.claims + width);
     scratch.texture = scratch.left_d + width;
     return scratch;
 }
@@ -192,7 +207,9 @@ enum tsr_status tsr_match_start(struct tsr_match *match, const struct tsr_match_
     if (!may_overlay(&resolved, &left, map) || !may_overlay(&resolved, &right, map)) {
         return TSR_ERR_ARG;
     }
-    *match = (struct tsr_match){resolved, left, right, map, scratch, 0};
+    bool covered = resolved.search_start_px >= 0;
+    const struct tsr_match_kernel *kernel = covered ? resolved.kernel : &tsr_match_kernel_portable;
+    *match = (struct tsr_match){resolved, left, right, map, scratch, kernel, 0};
     return TSR_OK;
 }
 
@@ -203,7 +220,7 @@ static void warm_up(const struct tsr_match *match, unsigned row, unsigned radius
         memset(scratch.columns, 0, (size_t)match->config.width * match->config.disparities);
         memset(scratch.texture, 0, match->config.width);
     }
-    tsr_match_add_row(match, row, row == 0 ? radius + 2u : 1u);
+    match->kernel->add_row(match, row, row == 0 ? radius + 2u : 1u);
 }
 
 static void match_row(const struct tsr_match *match, unsigned y, unsigned radius)
@@ -211,8 +228,7 @@ static void match_row(const struct tsr_match *match, unsigned y, unsigned radius
     unsigned last = match->config.height - 1u;
     unsigned enter = y + radius < last ? y + radius : last;
     unsigned leave = y > radius ? y - radius - 1u : 0u;
-    tsr_match_move_columns(match, enter, leave);
-    tsr_match_finish_row(match, y);
+    match->kernel->match_row(match, y, enter, leave);
 }
 
 enum tsr_status tsr_match_run(struct tsr_match *match, uint16_t rows)
@@ -226,7 +242,7 @@ enum tsr_status tsr_match_run(struct tsr_match *match, uint16_t rows)
     for (; rows > 0 && match->rows_done < total; rows--, match->rows_done++) {
         unsigned row = match->rows_done;
         if (row < height) {
-            tsr_match_prefilter_row(match, row);
+            match->kernel->prefilter_row(match, row);
         } else if (row < height + radius) {
             warm_up(match, row - height, radius);
         } else {

@@ -9,8 +9,6 @@
 
 #include "match_stages.h"
 
-#define NO_COST UINT16_MAX
-
 /* The disparities a pixel can search: lowest .. highest, or none. */
 struct offer {
     int lowest;
@@ -95,27 +93,31 @@ static uint16_t interpolate_q4(const int16_t *sums, struct tsr_match_winner winn
     return (uint16_t)(below > above ? centre_q4 + offset_q4 : centre_q4 - offset_q4);
 }
 
-/* Of the left pixels that chose one right pixel the one with the least sum has
- * it, the lowest d among equals: d grows with x. */
 static void claim_right(const struct tsr_match_scratch *scratch, int right_x, struct tsr_match_winner winner)
 {
-    if ((uint16_t)winner.sum < scratch->right_cost[right_x]) {
-        scratch->right_cost[right_x] = (uint16_t)winner.sum;
-        scratch->right_d[right_x] = winner.d;
+    uint16_t claim = TSR_MATCH_CLAIM(winner.sum, winner.d);
+    if (claim < scratch->claims[right_x]) {
+        scratch->claims[right_x] = claim;
     }
 }
 
 /* docs/math.md, eq. (17). */
-static void check_left_right(const struct tsr_match_config *config, const struct tsr_match_scratch *scratch,
-                             uint16_t *map_row)
+void tsr_match_check_left_right(const struct tsr_match *match, uint16_t *map_row)
 {
+    const struct tsr_match_config *config = &match->config;
+    struct tsr_match_scratch scratch = tsr_match_share_scratch(match);
+    if (config->lr_tolerance_px == TSR_MATCH_TEST_OFF) {
+        return;
+    }
+    unsigned tolerance = config->lr_tolerance_px;
+    const uint16_t *claims = scratch.claims - config->search_start_px; /* of column x - d, d as in the map */
     for (unsigned x = 0; x < config->width; x++) {
         if (map_row[x] == TSR_DISPARITY_INVALID) {
             continue;
         }
-        int d = scratch->left_d[x];
-        int apart = scratch->right_d[(int)x - config->search_start_px - d] - d;
-        if (apart > config->lr_tolerance_px || -apart > config->lr_tolerance_px) {
+        int d = scratch.left_d[x];
+        unsigned apart = (unsigned)(TSR_MATCH_CLAIM_D(claims[(int)x - d]) - d) + tolerance;
+        if (apart > 2u * tolerance) {
             map_row[x] = TSR_DISPARITY_INVALID;
         }
     }
@@ -149,7 +151,7 @@ void tsr_match_finish_row(const struct tsr_match *match, unsigned y)
     unsigned radius = config->window / 2u;
     uint16_t *map_row = match->map + (size_t)y * config->width;
     unsigned texture = begin_sums(&scratch, disparities, radius);
-    memset(scratch.right_cost, 0xff, sizeof(uint16_t) * config->width);
+    memset(scratch.claims, 0xff, sizeof(uint16_t) * config->width);
     for (unsigned x = 0; x <= last; x++) {
         unsigned enter = x + radius < last ? x + radius : last;
         unsigned leave = x > radius ? x - radius - 1u : 0u;
@@ -158,7 +160,5 @@ void tsr_match_finish_row(const struct tsr_match *match, unsigned y)
         texture = texture + scratch.texture[enter] - scratch.texture[leave];
         map_row[x] = match_pixel(config, &scratch, x, texture);
     }
-    if (config->lr_tolerance_px != TSR_MATCH_TEST_OFF) {
-        check_left_right(config, &scratch, map_row);
-    }
+    tsr_match_check_left_right(match, map_row);
 }

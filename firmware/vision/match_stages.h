@@ -4,8 +4,7 @@
  *   sums      int16_t [D]     S(x,y,.) of one pixel
  *   offered   int16_t [D]     the same with what the pixel cannot search masked
  *   columns   uint8_t [W][D]  column sums of A, see tsr_match_add_row()
- *   right_cost  uint16_t [W]  least sum of the left pixels that chose this right pixel
- *   right_d   uint8_t [W]     the disparity of that left pixel
+ *   claims    uint16_t [W]    of every right pixel the least claim of a left pixel, TSR_MATCH_CLAIM()
  *   left_d    uint8_t [W]     d* of every left pixel of the row
  *   texture   uint8_t [W]     column sums of |P_left - cap|
  *
@@ -26,26 +25,44 @@ struct tsr_match_scratch {
     int16_t *sums;
     int16_t *offered;
     uint8_t *columns;
-    uint16_t *right_cost;
-    uint8_t *right_d;
+    uint16_t *claims;
     uint8_t *left_d;
     uint8_t *texture;
 };
 
+/* Bytes between offered and columns; kernels lay what they need over all in front of columns. */
+#define TSR_MATCH_EDGE_ROOM 8u
+
+/* A claim orders by a quarter of the least sum and then by d: eq. (17). */
+#define TSR_MATCH_CLAIM(sum, d) ((uint16_t)((unsigned)(sum) >> 2 << 7 | (unsigned)(d)))
+#define TSR_MATCH_CLAIM_D(claim) ((claim)&127)
+#define TSR_MATCH_CLAIM_NONE UINT16_MAX
+
 struct tsr_match_scratch tsr_match_share_scratch(const struct tsr_match *match);
 
-/* Replace row y of both frames by eq. (10); the right one is stored mirrored,
- * so that ascending d reads ascending addresses. Rows in ascending order. */
+/* What a kernel does. Its functions share nothing but the scratch. */
+struct tsr_match_kernel {
+    const char *name;
+    /* Replace row y of both frames by eq. (10); the right one is stored mirrored,
+     * so that ascending d reads ascending addresses. Rows in ascending order. */
+    void (*prefilter_row)(const struct tsr_match *match, unsigned y);
+    /* Column sums times + one more row: columns[x][d] += times A(clip(x), y, d). */
+    void (*add_row)(const struct tsr_match *match, unsigned y, unsigned times);
+    /* Move the column sums down (add frame row y_new, take y_old away), and make
+     * row y of the map of them: eqs. (12) to (17). */
+    void (*match_row)(const struct tsr_match *match, unsigned y, unsigned y_new, unsigned y_old);
+};
+
+extern const struct tsr_match_kernel tsr_match_kernel_portable;
+
+/* The portable kernel in pieces. */
 void tsr_match_prefilter_row(const struct tsr_match *match, unsigned y);
-
-/* Column sums times + one more row: columns[x][d] += times A(clip(x), y, d). */
 void tsr_match_add_row(const struct tsr_match *match, unsigned y, unsigned times);
-
-/* Move the column sums down: add row y_new, take row y_old away. */
 void tsr_match_move_columns(const struct tsr_match *match, unsigned y_new, unsigned y_old);
-
-/* Row y of the map from the column sums around it: eqs. (12) to (17). */
 void tsr_match_finish_row(const struct tsr_match *match, unsigned y);
+
+/* Take from a row of the map what fails eq. (17), by scratch.claims and .left_d. */
+void tsr_match_check_left_right(const struct tsr_match *match, uint16_t *map_row);
 
 /* The least of the offered sums, the lowest d that has it, and how many are
  * within a limit. Sums lie in 0 .. TSR_MATCH_SUM_NONE. */

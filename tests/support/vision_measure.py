@@ -31,8 +31,9 @@ class Gray(ctypes.Structure):
 
 
 class MatchConfig(ctypes.Structure):
-    _fields_ = [("width", U16), ("height", U16), ("disparities", U16), ("window", U8), ("prefilter_cap", U8),
-                ("uniqueness_percent", U8), ("texture_min", U8), ("lr_tolerance_px", U8), ("search_start_px", I16)]
+    _fields_ = [("width", U16), ("height", U16), ("disparities", U16), ("window", U8), ("mode", U8), ("prefilter_cap", U8),
+                ("uniqueness_percent", U8), ("texture_min", U8), ("lr_tolerance_px", U8), ("search_start_px", I16),
+                ("kernel", ctypes.c_void_p)]
 
 
 class SimilarityConfig(ctypes.Structure):

@@ -76,7 +76,7 @@ def match(left, right, disparities, window, cap, uniqueness, texture_min, tolera
             costs = sums[y, x]
             best = min(candidates, key=lambda d: (costs[d], d))
             winners[x] = (best, candidates)
-            claims.setdefault(x - start - best, []).append((int(costs[best]), best))
+            claims.setdefault(x - start - best, []).append((int(costs[best]) // 4, best))
         for x, (best, candidates) in winners.items():
             costs = sums[y, x].tolist()
             least = costs[best]

@@ -102,7 +102,8 @@ static void test_check_names_the_bad_field(void)
     EXPECT_BAD(window, 3);
     EXPECT_BAD(window, 6);
     EXPECT_BAD(window, 17);
-    EXPECT_BAD(prefilter_cap, 26);
+    EXPECT_BAD(mode, TSR_MATCH_SAD8 + 1);
+    EXPECT_BAD(prefilter_cap, 13);
     EXPECT_BAD(uniqueness_percent, 101);
     EXPECT_BAD(texture_min, 128);
     EXPECT_BAD(lr_tolerance_px, 128);
@@ -110,6 +111,13 @@ static void test_check_names_the_bad_field(void)
     EXPECT_BAD(search_start_px, -(WIDTH - 16) - 1);
     const struct tsr_match_config low = {.width = 32, .height = 8};
     expect_bad(low, "window");
+    struct tsr_match_config narrow = config;
+    narrow.mode = TSR_MATCH_SAD8;
+    narrow.prefilter_cap = 6; /* 5 * 5 * 2 * 6 = 300 */
+    expect_bad(narrow, "prefilter_cap");
+    narrow.prefilter_cap = 0;
+    narrow.window = 13; /* 13 * 13 * 2 = 338 */
+    expect_bad(narrow, "window");
 }
 
 static void test_check_accepts_the_ends_of_every_range(void)
@@ -126,7 +134,7 @@ static void test_check_accepts_the_ends_of_every_range(void)
                                           .height = 480,
                                           .disparities = 128,
                                           .window = 15,
-                                          .prefilter_cap = 8,
+                                          .prefilter_cap = 4,
                                           .uniqueness_percent = 100,
                                           .texture_min = 127,
                                           .lr_tolerance_px = 127,
@@ -149,7 +157,7 @@ static void test_defaults_are_the_documented_ones(void)
     TEST_ASSERT_EQUAL(TSR_OK, tsr_match_start(&match, &zero, left, right, map, PIXELS, room, sizeof room));
     TEST_ASSERT_EQUAL(32, match.config.disparities);
     TEST_ASSERT_EQUAL(9, match.config.window);
-    TEST_ASSERT_EQUAL(14, match.config.prefilter_cap);
+    TEST_ASSERT_EQUAL(7, match.config.prefilter_cap);
     TEST_ASSERT_EQUAL(15, match.config.uniqueness_percent);
     TEST_ASSERT_EQUAL(1, match.config.texture_min);
     TEST_ASSERT_EQUAL(1, match.config.lr_tolerance_px);

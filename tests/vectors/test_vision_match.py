@@ -37,8 +37,9 @@ class Gray(ctypes.Structure):
 
 
 class MatchConfig(ctypes.Structure):
-    _fields_ = [("width", U16), ("height", U16), ("disparities", U16), ("window", U8), ("prefilter_cap", U8),
-                ("uniqueness_percent", U8), ("texture_min", U8), ("lr_tolerance_px", U8), ("search_start_px", I16)]
+    _fields_ = [("width", U16), ("height", U16), ("disparities", U16), ("window", U8), ("mode", U8), ("prefilter_cap", U8),
+                ("uniqueness_percent", U8), ("texture_min", U8), ("lr_tolerance_px", U8), ("search_start_px", I16),
+                ("kernel", ctypes.c_void_p)]
 
 
 class ChangeConfig(ctypes.Structure):
@@ -140,7 +141,7 @@ def pictures(height, width, shift):
 def check_match(label, left, right, config):
     got = run_match(left, right, config, [left.shape[1] + int(e) for e in RNG.integers(0, 9, 2)])
     window = config.window or 9
-    wanted = reference.match(left, right, config.disparities or 32, window, config.prefilter_cap or 127 // window,
+    wanted = reference.match(left, right, config.disparities or 32, window, config.prefilter_cap or 63 // window,
                              config.uniqueness_percent or DEFAULT_UNIQUENESS, config.texture_min or DEFAULT_TEXTURE,
                              config.lr_tolerance_px or 1, config.search_start_px)
     fields = {name: getattr(config, name) for name, _ in config._fields_}
@@ -157,7 +158,7 @@ def test_match():
                 for label, (left, right) in pictures(height, width, 6 + start):
                     if RNG.random() < 0.72:
                         continue
-                    config = MatchConfig(width, height, disparities, window, int(RNG.choice([0, 1, 127 // window])),
+                    config = MatchConfig(width, height, disparities, window, 0, int(RNG.choice([0, 1, 63 // window])),
                                          int(RNG.choice([0, 1, 100, 255])), int(RNG.choice([0, 5, 127, 255])),
                                          int(RNG.choice([0, 3, 127, 255])), start)
                     valid += check_match(label, left, right, config)

@@ -16,8 +16,8 @@
  * inside, and for each d a column where A(.,.,d) does not exist is the nearest
  * column where it does (docs/math.md, eq. (12)).
  *
- * This portable C is the definition: every variant for an instruction set gives
- * the same bits.
+ * The portable C is the definition: every kernel for an instruction set gives the
+ * same bits.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -37,19 +37,38 @@
 /* Switches the uniqueness, texture or left-right test off. */
 #define TSR_MATCH_TEST_OFF UINT8_C(255)
 
+enum tsr_match_mode {
+    TSR_MATCH_SAD,  /* 16-bit window sums */
+    TSR_MATCH_SAD8, /* 8-bit window sums, fastest: window^2 * 2 cap <= 255, so windows up to 11 */
+};
+
+/* An implementation of the matcher for one instruction set, see below. */
+struct tsr_match_kernel;
+
 /* Zero in a field means the default named beside it. */
 struct tsr_match_config {
     uint16_t width;             /* px, disparities .. TSR_IMAGE_WIDTH_MAX; no default */
     uint16_t height;            /* px, window .. TSR_IMAGE_HEIGHT_MAX; no default */
     uint16_t disparities;       /* D, searched disparities, 16 .. 128, a multiple of 8; default 32 */
     uint8_t window;             /* px, odd, 5 .. 15; default 9 */
-    uint8_t prefilter_cap;      /* 1 .. 127 / window (2 cap window <= 255); default the largest */
+    uint8_t mode;               /* enum tsr_match_mode; default TSR_MATCH_SAD */
+    uint8_t prefilter_cap;      /* 1 .. 63 / window (2 cap window <= 127), with SAD8 also <= 127 / window^2;
+                                   default the largest */
     uint8_t uniqueness_percent; /* 1 .. 100, or off; default 15 */
     uint8_t texture_min;        /* least sum of |P_left - cap| over the window, in units of window px, 1 .. 127, or
                                    off; default 1 */
     uint8_t lr_tolerance_px;    /* 1 .. 127, or off; default 1 */
     int16_t search_start_px;    /* s, -(width - disparities) .. width - disparities; default 0 */
+    const struct tsr_match_kernel *kernel; /* kept; default tsr_match_kernel_at(0) */
 };
+
+/*
+ * The kernels that run on this machine, the fastest first, the portable one
+ * last; null from there on. All give the same bits; a kernel leaves to the
+ * portable one what it does not cover (search_start_px < 0 at present).
+ */
+const struct tsr_match_kernel *tsr_match_kernel_at(unsigned index);
+const char *tsr_match_kernel_name(const struct tsr_match_kernel *kernel);
 
 /* Content belongs to the module. */
 struct tsr_match {
@@ -58,6 +77,7 @@ struct tsr_match {
     struct tsr_gray right;
     uint16_t *map;
     uint8_t *scratch;
+    const struct tsr_match_kernel *kernel;
     uint16_t rows_done;
 };
 
@@ -66,9 +86,9 @@ struct tsr_match {
 enum tsr_status tsr_match_check(const struct tsr_match_config *config, const char **field);
 
 /* Scratch bytes, from resolved values and from a configuration (0 if it does
- * not check): column sums, five rows of bytes, the sums of a pixel twice. */
+ * not check): column sums, four rows of bytes, and room to work on one pixel. */
 #define TSR_MATCH_SCRATCH_LEN(width, disparities)                                                                      \
-    ((size_t)(width) * ((size_t)(disparities) + 5u) + 4u * (size_t)(disparities))
+    ((size_t)(width) * ((size_t)(disparities) + 4u) + 4u * (size_t)(disparities) + 8u)
 size_t tsr_match_scratch_len(const struct tsr_match_config *config);
 
 /*

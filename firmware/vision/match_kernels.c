@@ -1,0 +1,42 @@
+/*
+ * Which kernels this build holds and this machine runs.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include "match_kernels.h"
+
+static void move_and_finish(const struct tsr_match *match, unsigned y, unsigned y_new, unsigned y_old)
+{
+    tsr_match_move_columns(match, y_new, y_old);
+    tsr_match_finish_row(match, y);
+}
+
+const struct tsr_match_kernel tsr_match_kernel_portable = {"portable", tsr_match_prefilter_row, tsr_match_add_row,
+                                                           move_and_finish};
+
+/* The fastest first. */
+static const struct {
+    const struct tsr_match_kernel *kernel;
+    bool (*is_supported)(void);
+} kernels[] = {
+#if defined(TSR_MATCH_HAS_DSP)
+    {&tsr_match_kernel_dsp, NULL},
+#endif
+    {&tsr_match_kernel_portable, NULL},
+};
+
+const struct tsr_match_kernel *tsr_match_kernel_at(unsigned index)
+{
+    for (unsigned i = 0; i < sizeof kernels / sizeof kernels[0]; i++) {
+        bool runs = kernels[i].is_supported == NULL || kernels[i].is_supported();
+        if (runs && index-- == 0) {
+            return kernels[i].kernel;
+        }
+    }
+    return NULL;
+}
+
+const char *tsr_match_kernel_name(const struct tsr_match_kernel *kernel)
+{
+    return kernel->name;
+}

@@ -1,0 +1,19 @@
+/*
+ * The kernels for instruction sets, and where a build has them.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_VISION_MATCH_KERNELS_H
+#define TSR_VISION_MATCH_KERNELS_H
+
+#include <stdbool.h>
+
+#include "match_stages.h"
+
+/* Cortex-M4, M7, M33: the DSP extension's parallel arithmetic (ARMv7-M ARM, A4.4.3), in Thumb state. */
+#if defined(__ARM_FEATURE_SIMD32) && defined(__thumb2__) && !defined(__ARM_ARCH_7A__)
+#define TSR_MATCH_HAS_DSP
+extern const struct tsr_match_kernel tsr_match_kernel_dsp;
+#endif
+
+#endif

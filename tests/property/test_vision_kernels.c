@@ -1,0 +1,252 @@
+/*
+ * Every kernel of the matcher that runs here gives the portable one's map, bit
+ * for bit: all windows, disparity counts, modes and caps, odd sizes, strides and
+ * alignments, any content, tests on and off. Runs on the host and on the board.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tsr/vision/match.h"
+#include "unity.h"
+
+#define WIDTH_MAX 176
+#define HEIGHT_MAX 40
+#define STRIDE_MAX (WIDTH_MAX + 9)
+#define GUARD 64
+#define GUARD_BYTE 0xa5
+#define FRAME_LEN (STRIDE_MAX * HEIGHT_MAX)
+#define SCRATCH_MAX TSR_MATCH_SCRATCH_LEN(WIDTH_MAX, TSR_DISPARITY_COUNT_MAX)
+
+static uint64_t state;
+static uint8_t scene[2][WIDTH_MAX * HEIGHT_MAX];
+static uint8_t frames[2][GUARD + FRAME_LEN + GUARD];
+static _Alignas(4) uint8_t scratch[GUARD + SCRATCH_MAX + GUARD];
+static uint16_t wanted[WIDTH_MAX * HEIGHT_MAX];
+static uint16_t got[GUARD + WIDTH_MAX * HEIGHT_MAX + GUARD];
+
+void setUp(void) {}
+void tearDown(void) {}
+
+static uint32_t draw(void)
+{
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return (uint32_t)(state >> 33);
+}
+
+static unsigned below(unsigned limit)
+{
+    return draw() % limit;
+}
+
+/* A scene seen twice with noise, or contents that strain the sums. */
+static void draw_scene(unsigned width, unsigned height, unsigned kind, int shift)
+{
+    uint32_t salt = draw();
+    for (unsigned y = 0; y < height; y++) {
+        for (unsigned x = 0; x < width; x++) {
+            uint8_t *left = &scene[0][y * width + x];
+            uint8_t *right = &scene[1][y * width + x];
+            uint32_t place = (x + 512u) / 3u * 2654435761u ^ y / 2u * 2246822519u ^ salt;
+            uint32_t seen = (x + 512u + (unsigned)shift) / 3u * 2654435761u ^ y / 2u * 2246822519u ^ salt;
+            switch (kind) {
+            case 0:
+                *left = (uint8_t)((place >> 13 & 0xf8u) + below(4));
+                *right = (uint8_t)((seen >> 13 & 0xf8u) + below(4));
+                break;
+            case 1:
+                *left = (uint8_t)draw();
+                *right = (uint8_t)draw();
+                break;
+            case 2:
+                *left = *right = 77;
+                break;
+            case 3: /* checker of one pixel, saturated */
+                *left = (x + y) % 2u != 0 ? 255 : 0;
+                *right = (x / 2u + y) % 2u != 0 ? 255 : 0;
+                break;
+            default: /* steep stripes of opposite sign: the largest differences */
+                *left = x / 2u % 2u != 0 ? 255 : 0;
+                *right = x / 2u % 2u != 0 ? 0 : 255;
+                break;
+            }
+        }
+    }
+}
+
+static struct tsr_gray place(unsigned which, unsigned width, unsigned height, unsigned stride, unsigned offset)
+{
+    memset(frames[which], GUARD_BYTE, sizeof frames[which]);
+    /* What ends the buffer ends the frame: a guard follows the last pixel. */
+    uint8_t *first = frames[which] + GUARD + offset;
+    for (unsigned y = 0; y < height; y++) {
+        memcpy(first + (size_t)y * stride, &scene[which][y * width], width);
+    }
+    return (struct tsr_gray){first, (uint16_t)width, (uint16_t)height, (uint16_t)stride};
+}
+
+static void expect_guards(const struct tsr_match_config *config, unsigned stride, unsigned offset)
+{
+    size_t scratch_len = tsr_match_scratch_len(config);
+    size_t pixels = (size_t)config->width * config->height;
+    for (unsigned i = 0; i < GUARD; i++) {
+        TEST_ASSERT_EQUAL_HEX8_MESSAGE(GUARD_BYTE, scratch[i], "before scratch");
+        TEST_ASSERT_EQUAL_HEX8_MESSAGE(GUARD_BYTE, scratch[GUARD + scratch_len + i], "behind scratch");
+        TEST_ASSERT_EQUAL_HEX16_MESSAGE(0xa5a5, got[i], "before map");
+        TEST_ASSERT_EQUAL_HEX16_MESSAGE(0xa5a5, got[GUARD + pixels + i], "behind map");
+    }
+    size_t span = (size_t)stride * (config->height - 1u) + config->width;
+    for (unsigned which = 0; which < 2; which++) {
+        const uint8_t *first = frames[which] + GUARD + offset;
+        for (unsigned i = 1; i <= GUARD / 2; i++) {
+            TEST_ASSERT_EQUAL_HEX8_MESSAGE(GUARD_BYTE, *(first - i), "before frame");
+            TEST_ASSERT_EQUAL_HEX8_MESSAGE(GUARD_BYTE, first[span - 1u + i], "behind frame");
+        }
+        for (unsigned y = 0; y + 1u < config->height; y++) {
+            for (unsigned x = config->width; x < stride; x++) {
+                TEST_ASSERT_EQUAL_HEX8_MESSAGE(GUARD_BYTE, first[(size_t)y * stride + x], "between rows");
+            }
+        }
+    }
+}
+
+static void run(const struct tsr_match_config *config, unsigned stride, unsigned offset)
+{
+    struct tsr_match match;
+    struct tsr_gray left = place(0, config->width, config->height, stride, offset);
+    struct tsr_gray right = place(1, config->width, config->height, stride, offset);
+    memset(scratch, GUARD_BYTE, sizeof scratch);
+    memset(got, GUARD_BYTE, sizeof got);
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_match_start(&match, config, left, right, got + GUARD,
+                                              (size_t)config->width * config->height, scratch + GUARD,
+                                              tsr_match_scratch_len(config)));
+    while (tsr_match_run(&match, (uint16_t)(1u + below(9))) == TSR_AGAIN) {
+    }
+}
+
+static void print_number(const char *name, int value)
+{
+    UnityPrint(name);
+    UnityPrintNumber(value);
+}
+
+static void print_case(const struct tsr_match_config *config, unsigned x, unsigned y, unsigned found, unsigned right)
+{
+    UnityPrint(tsr_match_kernel_name(config->kernel));
+    print_number(" mode ", config->mode);
+    print_number(" width ", config->width);
+    print_number(" height ", config->height);
+    print_number(" disparities ", config->disparities);
+    print_number(" window ", config->window);
+    print_number(" cap ", config->prefilter_cap);
+    print_number(" start ", config->search_start_px);
+    print_number(" x ", (int)x);
+    print_number(" y ", (int)y);
+    print_number(": ", (int)found);
+    print_number(", not ", (int)right);
+    UNITY_PRINT_EOL();
+}
+
+static void compare(struct tsr_match_config config)
+{
+    unsigned stride = config.width + (below(3) == 0 ? 0 : below(10));
+    unsigned offset = below(4);
+    size_t pixels = (size_t)config.width * config.height;
+    unsigned count = 0;
+    while (tsr_match_kernel_at(count) != NULL) {
+        count++;
+    }
+    for (unsigned i = count; i-- > 0;) {
+        config.kernel = tsr_match_kernel_at(i);
+        run(&config, stride, offset);
+        expect_guards(&config, stride, offset);
+        if (i == count - 1u) {
+            memcpy(wanted, got + GUARD, pixels * sizeof *wanted);
+            continue;
+        }
+        for (size_t at = 0; at < pixels; at++) {
+            if (wanted[at] != got[GUARD + at]) {
+                print_case(&config, (unsigned)(at % config.width), (unsigned)(at / config.width), got[GUARD + at],
+                           wanted[at]);
+                TEST_FAIL_MESSAGE("differs from the portable kernel");
+            }
+        }
+    }
+}
+
+static void compare_contents(struct tsr_match_config config, unsigned turns)
+{
+    for (unsigned turn = 0; turn < turns; turn++) {
+        int shift = config.search_start_px + (int)below(config.disparities);
+        draw_scene(config.width, config.height, turn < 2 ? 0 : below(5), shift);
+        config.uniqueness_percent = (uint8_t)(below(4) == 0 ? TSR_MATCH_TEST_OFF : below(3) == 0 ? 1 + below(100) : 0);
+        config.texture_min = (uint8_t)(below(3) == 0 ? TSR_MATCH_TEST_OFF : below(20));
+        config.lr_tolerance_px = (uint8_t)(below(4) == 0 ? TSR_MATCH_TEST_OFF : below(4));
+        compare(config);
+    }
+}
+
+static void sweep(unsigned mode, unsigned window_max)
+{
+    for (unsigned window = 5; window <= window_max; window += 2) {
+        for (unsigned disparities = 16; disparities <= 128; disparities += 8) {
+            unsigned width = disparities + below(WIDTH_MAX - disparities + 1u);
+            if (below(6) == 0) {
+                width = disparities; /* all border */
+            }
+            struct tsr_match_config config = {.width = (uint16_t)width,
+                                              .height = (uint16_t)(window + below(HEIGHT_MAX - window + 1u)),
+                                              .disparities = (uint16_t)disparities,
+                                              .window = (uint8_t)window,
+                                              .mode = (uint8_t)mode};
+            config.prefilter_cap = (uint8_t)(below(4) == 0 ? 1 : 0);
+            if (width > disparities && below(3) == 0) {
+                config.search_start_px = (int16_t)below(width - disparities + 1u);
+            }
+            compare_contents(config, 3);
+        }
+    }
+}
+
+static void test_sad_is_the_portable_one(void)
+{
+    sweep(TSR_MATCH_SAD, 15);
+}
+
+static void test_sad8_is_the_portable_one(void)
+{
+    sweep(TSR_MATCH_SAD8, 11);
+}
+
+static void test_common_sizes(void)
+{
+    static const struct tsr_match_config configs[] = {
+        {.width = 160, .height = 24, .disparities = 32},
+        {.width = 160, .height = 24, .disparities = 48},
+        {.width = 176, .height = 24, .disparities = 64},
+        {.width = 170, .height = 20, .disparities = 128},
+    };
+    for (unsigned i = 0; i < sizeof configs / sizeof configs[0]; i++) {
+        compare_contents(configs[i], 8);
+    }
+}
+
+int main(void)
+{
+    const char *text = getenv("SEED");
+    uint64_t seed = text != NULL ? strtoull(text, NULL, 10) : 1;
+    state = seed;
+    UNITY_BEGIN();
+    print_number("replay: SEED=", (int)seed);
+    for (unsigned i = 0; tsr_match_kernel_at(i) != NULL; i++) {
+        UnityPrint(", ");
+        UnityPrint(tsr_match_kernel_name(tsr_match_kernel_at(i)));
+    }
+    UNITY_PRINT_EOL();
+    RUN_TEST(test_common_sizes);
+    RUN_TEST(test_sad_is_the_portable_one);
+    RUN_TEST(test_sad8_is_the_portable_one);
+    return UNITY_END();
+}
