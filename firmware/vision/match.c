@@ -21,7 +21,7 @@
 #define DISPARITIES_DEFAULT 32
 #define WINDOW_DEFAULT 9
 #define WINDOW_MIN 5
-#define CAP_ROOM 63 /* cap * window <= 63: column sums of 2 cap, and their differences, fit 8 bits with a sign */
+#define CAP_ROOM 63       /* cap * window <= 63: column sums of 2 cap, and their differences, fit 8 bits with a sign */
 #define SAD8_CAP_ROOM 127 /* cap * window^2 <= 127: window sums fit 8 bits */
 #define UNIQUENESS_DEFAULT 15
 #define UNIQUENESS_MAX 100

@@ -34,27 +34,22 @@ static const int8_t halfword_of_lane[10] = {-1, 0, 2, 1, 3, 4, 6, 5, 7, 8};
 
 /* Sets the lanes of a group that lie within one of lane l. */
 static const uint32_t own_lanes[GROUP_LANES][4] = {
-    {0x0000ffff, 0x0000ffff, 0, 0},
-    {0xffffffff, 0x0000ffff, 0, 0},
-    {0xffff0000, 0xffffffff, 0, 0},
-    {0xffff0000, 0xffff0000, 0x0000ffff, 0},
-    {0, 0xffff0000, 0x0000ffff, 0x0000ffff},
-    {0, 0, 0xffffffff, 0x0000ffff},
-    {0, 0, 0xffff0000, 0xffffffff},
-    {0, 0, 0xffff0000, 0xffff0000},
+    {0x0000ffff, 0x0000ffff, 0, 0},          {0xffffffff, 0x0000ffff, 0, 0},          {0xffff0000, 0xffffffff, 0, 0},
+    {0xffff0000, 0xffff0000, 0x0000ffff, 0}, {0, 0xffff0000, 0x0000ffff, 0x0000ffff}, {0, 0, 0xffffffff, 0x0000ffff},
+    {0, 0, 0xffff0000, 0xffffffff},          {0, 0, 0xffff0000, 0xffff0000},
 };
 
 /* What one row works on. */
 struct row {
-    uint32_t *sums;        /* [D / 2]; in front of it, downward, the least of every group */
-    uint8_t *columns;      /* [columns_count][D] */
+    uint32_t *sums;         /* [D / 2]; in front of it, downward, the least of every group */
+    uint8_t *columns;       /* [columns_count][D] */
     unsigned columns_count; /* W - s */
     unsigned disparities;
     uint32_t unique_scale; /* ceil(2^20 uniqueness / 100) */
     bool unique_off;
     uint8_t *texture; /* column sums, of all columns */
     uint16_t *claims;
-    uint8_t *left_d;  /* of the first pixel that has candidates, as map_row */
+    uint8_t *left_d; /* of the first pixel that has candidates, as map_row */
     uint16_t *map_row;
 };
 
@@ -293,15 +288,15 @@ static struct tsr_dsp_window begin_window(const struct tsr_match *match, const s
     unsigned disparities = row->disparities;
     memcpy(edge, match->right.pixels + (size_t)y_new * match->right.stride + (last + 1u - disparities), disparities);
     memset(edge + disparities, 0, GROUP_LANES);
-    struct tsr_dsp_window window = {
-        .right_new = edge + disparities,
-        .right_old = match->right.pixels + (size_t)y_old * match->right.stride + (last + 1u),
-        .enter = row->columns - disparities,
-        .leave = row->columns - disparities,
-        .left_new = match->left.pixels + (size_t)y_new * match->left.stride + start,
-        .left_old = match->left.pixels + (size_t)y_old * match->left.stride + start,
-        .sums = row->sums,
-        .stride = disparities};
+    struct tsr_dsp_window window = {.right_new = edge + disparities,
+                                    .right_old =
+                                        match->right.pixels + (size_t)y_old * match->right.stride + (last + 1u),
+                                    .enter = row->columns - disparities,
+                                    .leave = row->columns - disparities,
+                                    .left_new = match->left.pixels + (size_t)y_new * match->left.stride + start,
+                                    .left_old = match->left.pixels + (size_t)y_old * match->left.stride + start,
+                                    .sums = row->sums,
+                                    .stride = disparities};
     return window;
 }
 
@@ -349,7 +344,8 @@ static void match_row(const struct tsr_match *match, unsigned y, unsigned y_new,
     unsigned enter = 0;
     for (; enter < row.disparities + radius && enter < row.columns_count; enter++) {
         if (enter == row.disparities) {
-            window.right_new = match->right.pixels + (size_t)y_new * match->right.stride + (row.columns_count + start - row.disparities);
+            window.right_new = match->right.pixels + (size_t)y_new * match->right.stride +
+                               (row.columns_count + start - row.disparities);
         }
         texture = step_at_border(match, &row, &window, enter, texture);
     }

@@ -26,9 +26,7 @@ static inline void tsr_dsp_store(uint8_t *at, uint32_t word)
 static inline uint32_t tsr_dsp_difference(uint32_t a, uint32_t b)
 {
     uint32_t swapped, result;
-    __asm("usub8 %0, %2, %3\n\tusub8 %1, %3, %2\n\tsel %1, %1, %0"
-          : "=&r"(swapped), "=&r"(result)
-          : "r"(a), "r"(b));
+    __asm("usub8 %0, %2, %3\n\tusub8 %1, %3, %2\n\tsel %1, %1, %0" : "=&r"(swapped), "=&r"(result) : "r"(a), "r"(b));
     return result;
 }
 

@@ -46,20 +46,20 @@
     "strd r5, r6, [r7, #" sum "]\n\t"
 
 #define MOVE_GROUP(group)                                                                                              \
-    ".Lmove_group_" #group ":\n\t"                                                                                     \
-    MOVE_QUAD("8*" #group, "16*" #group)                                                                               \
-    "usub16 r12, r5, r6\n\t"                                                                                           \
-    "sel r12, r6, r5\n\t"                                                                                              \
-    MOVE_QUAD("8*" #group "+4", "16*" #group "+8")                                                                     \
-    "usub16 r8, r5, r6\n\t"                                                                                            \
-    "sel r5, r6, r5\n\t"                                                                                               \
-    "usub16 r8, r5, r12\n\t"                                                                                           \
-    "sel r5, r12, r5\n\t"                                                                                              \
-    "str r5, [r7, #-4-4*" #group "]\n\t"                                                                               \
-    "mov r6, #" #group "*0x10001\n\t"                                                                                  \
-    "usub16 r8, r0, r5\n\t"                                                                                            \
-    "sel r0, r5, r0\n\t"                                                                                               \
-    "sel r11, r6, r11\n\t"
+    ".Lmove_group_" #group                                                                                             \
+    ":\n\t" MOVE_QUAD("8*" #group, "16*" #group) "usub16 r12, r5, r6\n\t"                                              \
+                                                 "sel r12, r6, r5\n\t" MOVE_QUAD(                                      \
+                                                     "8*" #group "+4", "16*" #group "+8") "usub16 r8, r5, r6\n\t"      \
+                                                                                          "sel r5, r6, r5\n\t"         \
+                                                                                          "usub16 r8, r5, r12\n\t"     \
+                                                                                          "sel r5, r12, r5\n\t"        \
+                                                                                          "str r5, [r7, #-4-4*" #group \
+                                                                                          "]\n\t"                      \
+                                                                                          "mov r6, #" #group           \
+                                                                                          "*0x10001\n\t"               \
+                                                                                          "usub16 r8, r0, r5\n\t"      \
+                                                                                          "sel r0, r5, r0\n\t"         \
+                                                                                          "sel r11, r6, r11\n\t"
 
 /* Both functions use one table by its distance: one section. */
 #define IN_ONE_SECTION __attribute__((naked, section(".text.tsr_dsp_move_window")))
@@ -80,18 +80,17 @@ IN_ONE_SECTION uint64_t tsr_dsp_move_window(struct tsr_dsp_window *window)
                    "mul r10, r10, r12\n\t"
                    "ldr r12, [r0, #32]\n\t"
                    "mvn r0, #0\n\t"
-                   "bx r12\n\t"
-                   MOVE_GROUP(15) MOVE_GROUP(14) MOVE_GROUP(13) MOVE_GROUP(12) MOVE_GROUP(11) MOVE_GROUP(10)
-                   MOVE_GROUP(9) MOVE_GROUP(8) MOVE_GROUP(7) MOVE_GROUP(6) MOVE_GROUP(5) MOVE_GROUP(4)
-                   MOVE_GROUP(3) MOVE_GROUP(2) MOVE_GROUP(1) MOVE_GROUP(0)
-                   "mov r1, r11\n\t"
-                   "pop {r4-r11, pc}\n\t"
-                   ".align 2\n\t"
-                   ".Lmove_entries:\n\t"
-                   ".word .Lmove_group_0+1, .Lmove_group_1+1, .Lmove_group_2+1, .Lmove_group_3+1\n\t"
-                   ".word .Lmove_group_4+1, .Lmove_group_5+1, .Lmove_group_6+1, .Lmove_group_7+1\n\t"
-                   ".word .Lmove_group_8+1, .Lmove_group_9+1, .Lmove_group_10+1, .Lmove_group_11+1\n\t"
-                   ".word .Lmove_group_12+1, .Lmove_group_13+1, .Lmove_group_14+1, .Lmove_group_15+1\n\t");
+                   "bx r12\n\t" MOVE_GROUP(15) MOVE_GROUP(14) MOVE_GROUP(13) MOVE_GROUP(12) MOVE_GROUP(11) MOVE_GROUP(
+                       10) MOVE_GROUP(9) MOVE_GROUP(8) MOVE_GROUP(7) MOVE_GROUP(6) MOVE_GROUP(5) MOVE_GROUP(4)
+                       MOVE_GROUP(3) MOVE_GROUP(2) MOVE_GROUP(1) MOVE_GROUP(
+                           0) "mov r1, r11\n\t"
+                              "pop {r4-r11, pc}\n\t"
+                              ".align 2\n\t"
+                              ".Lmove_entries:\n\t"
+                              ".word .Lmove_group_0+1, .Lmove_group_1+1, .Lmove_group_2+1, .Lmove_group_3+1\n\t"
+                              ".word .Lmove_group_4+1, .Lmove_group_5+1, .Lmove_group_6+1, .Lmove_group_7+1\n\t"
+                              ".word .Lmove_group_8+1, .Lmove_group_9+1, .Lmove_group_10+1, .Lmove_group_11+1\n\t"
+                              ".word .Lmove_group_12+1, .Lmove_group_13+1, .Lmove_group_14+1, .Lmove_group_15+1\n\t");
 }
 
 IN_ONE_SECTION const void *tsr_dsp_entry(unsigned groups)

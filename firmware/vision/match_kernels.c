@@ -14,6 +14,14 @@ static void move_and_finish(const struct tsr_match *match, unsigned y, unsigned 
 const struct tsr_match_kernel tsr_match_kernel_portable = {"portable", tsr_match_prefilter_row, tsr_match_add_row,
                                                            move_and_finish};
 
+#if defined(TSR_MATCH_HAS_X86)
+static bool has_avx2(void)
+{
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") &&
+           __builtin_cpu_supports("popcnt");
+}
+#endif
+
 /* The fastest first. */
 static const struct {
     const struct tsr_match_kernel *kernel;
@@ -21,6 +29,10 @@ static const struct {
 } kernels[] = {
 #if defined(TSR_MATCH_HAS_DSP)
     {&tsr_match_kernel_dsp, NULL},
+#endif
+#if defined(TSR_MATCH_HAS_X86)
+    {&tsr_match_kernel_avx2, has_avx2},
+    {&tsr_match_kernel_sse2, NULL},
 #endif
     {&tsr_match_kernel_portable, NULL},
 };

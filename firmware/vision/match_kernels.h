@@ -16,4 +16,11 @@
 extern const struct tsr_match_kernel tsr_match_kernel_dsp;
 #endif
 
+/* SSE2 belongs to x86-64 (AMD64 ABI); AVX2 is asked for when the program runs. */
+#if defined(__x86_64__)
+#define TSR_MATCH_HAS_X86
+extern const struct tsr_match_kernel tsr_match_kernel_sse2;
+extern const struct tsr_match_kernel tsr_match_kernel_avx2;
+#endif
+
 #endif

@@ -60,9 +60,7 @@ static void draw_scene(unsigned width, unsigned height, unsigned kind, int shift
                 *left = (uint8_t)draw();
                 *right = (uint8_t)draw();
                 break;
-            case 2:
-                *left = *right = 77;
-                break;
+            case 2: *left = *right = 77; break;
             case 3: /* checker of one pixel, saturated */
                 *left = (x + y) % 2u != 0 ? 255 : 0;
                 *right = (x / 2u + y) % 2u != 0 ? 255 : 0;
@@ -119,9 +117,9 @@ static void run(const struct tsr_match_config *config, unsigned stride, unsigned
     struct tsr_gray right = place(1, config->width, config->height, stride, offset);
     memset(scratch, GUARD_BYTE, sizeof scratch);
     memset(got, GUARD_BYTE, sizeof got);
-    TEST_ASSERT_EQUAL(TSR_OK, tsr_match_start(&match, config, left, right, got + GUARD,
-                                              (size_t)config->width * config->height, scratch + GUARD,
-                                              tsr_match_scratch_len(config)));
+    TEST_ASSERT_EQUAL(TSR_OK,
+                      tsr_match_start(&match, config, left, right, got + GUARD, (size_t)config->width * config->height,
+                                      scratch + GUARD, tsr_match_scratch_len(config)));
     while (tsr_match_run(&match, (uint16_t)(1u + below(9))) == TSR_AGAIN) {
     }
 }
