@@ -1,12 +1,15 @@
 /*
- * 3x3 median of a disparity map, in place: the rows that are already
- * overwritten are read from copies.
+ * Median of a disparity map, in place: the rows that are already overwritten
+ * are read from copies. Here is 3x3; median_wide.c has 5x5.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
 #include "tsr/vision/median.h"
 
 #include <string.h>
+
+#include "map_buffers.h"
+#include "median_wide.h"
 
 #define NEIGHBOURS_MAX 9
 
@@ -15,19 +18,25 @@ struct rows {
     const uint16_t *row[3];
 };
 
+enum tsr_status tsr_median_start_window(struct tsr_median *median, uint8_t window, uint16_t width, uint16_t height,
+                                        uint16_t *map, size_t map_cap, uint8_t *scratch, size_t scratch_cap)
+{
+    if (median == NULL || (window != TSR_MEDIAN_WINDOW && window != TSR_MEDIAN_WINDOW_MAX)) {
+        return TSR_ERR_ARG;
+    }
+    const struct tsr_map_buffers buffers = {map,   map_cap, scratch, scratch_cap, TSR_MEDIAN_SCRATCH_LEN(width),
+                                            width, height};
+    enum tsr_status status = tsr_map_check_buffers(&buffers);
+    if (status == TSR_OK) {
+        *median = (struct tsr_median){map, scratch, width, height, 0, window};
+    }
+    return status;
+}
+
 enum tsr_status tsr_median_start(struct tsr_median *median, uint16_t width, uint16_t height, uint16_t *map,
                                  size_t map_cap, uint8_t *scratch, size_t scratch_cap)
 {
-    if (median == NULL || map == NULL || scratch == NULL || (uintptr_t)map % sizeof(uint16_t) != 0 ||
-        (uintptr_t)scratch % TSR_MEDIAN_SCRATCH_ALIGN != 0 || width == 0 || width > TSR_IMAGE_WIDTH_MAX ||
-        height == 0 || height > TSR_IMAGE_HEIGHT_MAX) {
-        return TSR_ERR_ARG;
-    }
-    if (map_cap < (size_t)width * height || scratch_cap < TSR_MEDIAN_SCRATCH_LEN(width)) {
-        return TSR_ERR_NOBUF;
-    }
-    *median = (struct tsr_median){map, scratch, width, height, 0};
-    return TSR_OK;
+    return tsr_median_start_window(median, TSR_MEDIAN_WINDOW, width, height, map, map_cap, scratch, scratch_cap);
 }
 
 /* Insert a value into the first count ones, which ascend. */
@@ -79,7 +88,11 @@ enum tsr_status tsr_median_run(struct tsr_median *median, uint16_t rows)
         return TSR_ERR_ARG;
     }
     for (; rows > 0 && median->rows_done < median->height; rows--, median->rows_done++) {
-        filter_row(median, median->rows_done);
+        if (median->window == TSR_MEDIAN_WINDOW) {
+            filter_row(median, median->rows_done);
+        } else {
+            tsr_median_filter_wide_row(median, median->rows_done);
+        }
     }
     return median->rows_done < median->height ? TSR_AGAIN : TSR_OK;
 }

@@ -1,4 +1,4 @@
-"""The Cortex-M4 and the host give the same bytes: change, matching, median, similarity, both codecs, sealing.
+"""The Cortex-M4 and the host give the same bytes: change, matching, filters, similarity, both codecs, sealing.
 
 The workbench runs on both over the same pictures: the demo's Aloe frames at 160x120 and 320x240, and with TSR_DATA the
 pairs in that folder. On the host it is built with address and undefined-behaviour sanitizers.
@@ -12,7 +12,8 @@ import board
 import pictures
 
 RESULTS = ["change_result", "change_state", "view_coded", "view_decoded", "reference_coded", "reference_decoded",
-           "match", "median", "quantise", "similarity", "map_coded", "map_decoded", "message", "frames"]
+           "match", "median", "median5", "speckle", "fill", "gaussian3", "gaussian5", "diffusion",
+           "quantise", "similarity", "map_coded", "map_decoded", "message", "frames"]
 
 
 def results(folder):

@@ -129,6 +129,7 @@ static void run_match(const struct workbench_case *bench, size_t pixels)
     workbench_end("match", (size_t)tsr_match_rows_total(&match) * bench->width * bench->disparities);
     workbench_expect(status == TSR_OK, "match");
     workbench_store("match.out", map, pixels * sizeof *map);
+    workbench_run_refinements(bench, map);
 
     struct tsr_median median;
     workbench_begin();

@@ -1,35 +1,47 @@
 /*
  * tarsier: the tools.
  *
- *   tarsier demo-scene --pictures DIR --out DIR   recorded folders and site of the demo
+ *   tarsier demo-scene --pictures DIR --out DIR          recorded folders and site of the demo
+ *   tarsier match LEFT RIGHT --disparities N -o OUT      a disparity map as a node computes it
+ *   tarsier compare MAP TRUTH                            how good a disparity map is
  *
  * SPDX-License-Identifier: Apache-2.0
  */
 
+#include "commands.h"
 #include "tsr/host/command_line.h"
-#include "tsr/stage/stage.h"
 
 namespace
 {
 
-void declare(CLI::App &app, tsr::StageOptions &stage)
+struct Entry {
+    const char *name;
+    const char *description;
+    tsr::Command (*declare)(CLI::App &);
+};
+
+constexpr Entry kCommands[] = {
+    {"demo-scene", "write the demo's recorded frames and site", tsr::declare_demo_scene},
+    {"match", "match a rectified pair as a node does", tsr::declare_match},
+    {"compare", "judge a disparity map by the truth", tsr::declare_compare},
+};
+
+void declare(CLI::App &app, tsr::Command &chosen)
 {
     app.require_subcommand(1);
-    CLI::App *demo_scene = app.add_subcommand("demo-scene", "write the demo's recorded frames and site");
-    demo_scene->add_option("--pictures", stage.pictures, "folder of OpenCV's example data")->required();
-    demo_scene->add_option("--out", stage.out, "folder to write")->required();
-    demo_scene->add_option("--seed", stage.seed, "of the sensor noise and the site");
+    for (const Entry &entry : kCommands) {
+        CLI::App *command = app.add_subcommand(entry.name, entry.description);
+        const tsr::Command run = entry.declare(*command);
+        command->callback([&chosen, run] { chosen = run; });
+    }
 }
 
 } // namespace
 
 int main(int argc, char **argv)
 {
-    tsr::StageOptions stage;
-    const auto run = [&] {
-        tsr::write_stage(stage);
-        return 0;
-    };
-    return tsr::run_command_line({"tarsier", "Tools of Tarsier.", [&](CLI::App &app) { declare(app, stage); }, run},
+    tsr::Command chosen;
+    const auto run = [&] { return chosen(); };
+    return tsr::run_command_line({"tarsier", "Tools of Tarsier.", [&](CLI::App &app) { declare(app, chosen); }, run},
                                  argc, argv);
 }

@@ -1,0 +1,155 @@
+/*
+ * tarsier match LEFT RIGHT --disparities N [...] -o OUT
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "match_options.h"
+#include "tsr/host/colour_map.h"
+#include "tsr/host/input_error.h"
+#include "tsr/stereo/disparity_file.h"
+
+namespace tsr
+{
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+bool is_same_file(const fs::path &a, const fs::path &b)
+{
+    std::error_code error;
+    return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error) && !error;
+}
+
+/* Before anything is read: outputs that would destroy an input or each other. */
+void check_outputs(const MatchOptions &options)
+{
+    const DisparityFormat format = disparity_format(options.out, "--out");
+    if (format == DisparityFormat::kPng && options.search_start < 0) {
+        throw InputError(options.out.string(), "--out",
+                         "a PNG holds no disparity below 0, which --search-start asks for: write .pfm");
+    }
+    if (!options.picture.empty() && options.picture.extension() != ".png") {
+        throw InputError(options.picture.string(), "--png", "the name does not end in .png");
+    }
+    const fs::path inputs[] = {options.left, options.right};
+    for (const fs::path &input : inputs) {
+        if (is_same_file(options.out, input)) {
+            throw InputError(options.out.string(), "--out", "is an input");
+        }
+        if (!options.picture.empty() && is_same_file(options.picture, input)) {
+            throw InputError(options.picture.string(), "--png", "is an input");
+        }
+    }
+    if (!options.picture.empty() && is_same_file(options.picture, options.out)) {
+        throw InputError(options.picture.string(), "--png", "is the same file as --out");
+    }
+}
+
+GrayImage read_right(const MatchOptions &options, const ImageSize &size)
+{
+    GrayImage right = read_gray_image(options.right);
+    if (right.size() != size) {
+        throw InputError(options.right.string(), "size",
+                         std::to_string(right.width) + "x" + std::to_string(right.height) + ", " +
+                             options.left.string() + " has " + std::to_string(size.width) + "x" +
+                             std::to_string(size.height));
+    }
+    return right;
+}
+
+/* Between the views: the map's disparities count from the search start. */
+FloatImage view_disparity(const StereoResult &result, const tsr_match_config &config)
+{
+    FloatImage map = float_disparity(result.disparity_q4, config.width, config.height);
+    for (float &disparity : map.pixels) {
+        disparity += config.search_start_px; /* infinity stays */
+    }
+    return map;
+}
+
+double density_of(const StereoResult &result)
+{
+    const auto invalid = std::count(result.disparity_q4.begin(), result.disparity_q4.end(), TSR_DISPARITY_INVALID);
+    return 1 - static_cast<double>(invalid) / static_cast<double>(result.disparity_q4.size());
+}
+
+/* The picture first: where the map is, all is. */
+void write_outputs(const MatchOptions &options, const StereoResult &result, const tsr_match_config &config)
+{
+    if (!options.picture.empty()) {
+        write_png(options.picture,
+                  colour_disparity(result.disparity_q4, config.width, config.height, config.disparities));
+    }
+    write_disparity_file(options.out, view_disparity(result, config));
+}
+
+void print_json(const MatchOptions &options, const StereoPipeline &pipeline, const StereoResult &result)
+{
+    const tsr_match_config &config = pipeline.match_config();
+    const std::size_t pixels = result.disparity_q4.size();
+    const Json json = {{"width", config.width},
+                       {"height", config.height},
+                       {"disparities", config.disparities},
+                       {"search_start_px", config.search_start_px},
+                       {"window", config.window},
+                       {"mode", options.mode},
+                       {"refine", refine_steps(options)},
+                       {"density", density_of(result)},
+                       {"match_ms", result.match_ms},
+                       {"refine_ms", result.refine_ms},
+                       {"match_scratch_bytes", pipeline.match_scratch_len()},
+                       {"refine_scratch_bytes", pipeline.refine_scratch_len()},
+                       {"frames_bytes", 2 * pixels},
+                       {"map_bytes", sizeof(std::uint16_t) * pixels},
+                       {"out", options.out.string()}};
+    std::cout << json.dump(1, ' ', false, Json::error_handler_t::replace) << "\n";
+}
+
+void print_text(const MatchOptions &options, const StereoPipeline &pipeline, const StereoResult &result)
+{
+    const tsr_match_config &config = pipeline.match_config();
+    std::printf("%s: %ux%u, %.1f %% valid, match %.1f ms, refine %.1f ms, scratch %zu and %zu bytes\n",
+                options.out.c_str(), config.width, config.height, 100 * density_of(result), result.match_ms,
+                result.refine_ms, pipeline.match_scratch_len(), pipeline.refine_scratch_len());
+}
+
+int match(const MatchOptions &options)
+{
+    check_outputs(options);
+    const GrayImage left = read_gray_image(options.left);
+    const StereoOptions stereo = read_match_options(options, left.size());
+    const GrayImage right = read_right(options, left.size());
+    StereoPipeline pipeline(stereo);
+    const StereoResult result = pipeline.run(left, right);
+    write_outputs(options, result, pipeline.match_config());
+    if (options.json) {
+        print_json(options, pipeline, result);
+    } else {
+        print_text(options, pipeline, result);
+    }
+    return 0;
+}
+
+} // namespace
+
+Command declare_match(CLI::App &command)
+{
+    auto options = std::make_shared<MatchOptions>();
+    declare_match_options(command, *options);
+    return [options] { return match(*options); };
+}
+
+} // namespace tsr

@@ -1,0 +1,194 @@
+/*
+ * Options to configuration: a matcher's mode or a filter is one line of a table.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include "match_options.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include "tsr/host/input_error.h"
+
+namespace tsr
+{
+namespace
+{
+
+struct Mode {
+    std::string_view name;
+    void (*select)(tsr_match_config &);
+};
+constexpr std::array kModes = {Mode{"sad", [](tsr_match_config &) {}}};
+
+struct Step {
+    std::string_view name;
+    tsr_refine_step step;
+};
+constexpr std::array kSteps = {Step{"median3", TSR_REFINE_MEDIAN3},     Step{"median5", TSR_REFINE_MEDIAN5},
+                               Step{"speckle", TSR_REFINE_SPECKLE},     Step{"fill", TSR_REFINE_FILL},
+                               Step{"gaussian3", TSR_REFINE_GAUSSIAN3}, Step{"gaussian5", TSR_REFINE_GAUSSIAN5},
+                               Step{"diffusion", TSR_REFINE_DIFFUSION}};
+
+/* A field of the configuration, the option that sets it, and what it takes. */
+struct Field {
+    std::string_view field;
+    const char *option;
+    const char *takes;
+};
+constexpr std::array kFields = {
+    Field{"disparities", "--disparities", "16 .. 128, a multiple of 8, at most the width of the pictures"},
+    Field{"window", "--window", "odd, 5 .. 15, at most the height of the pictures"},
+    Field{"uniqueness_percent", "--uniqueness", "1 .. 100, or off"},
+    Field{"texture_min", "--texture", "1 .. 127, or off"},
+    Field{"lr_tolerance_px", "--lr", "1 .. 127, or off"},
+    Field{"search_start_px", "--search-start", "at most width - disparities, to either side"},
+    Field{"min_size", "--speckle-size", "2 .. 4096"},
+    Field{"max_difference_q4", "--speckle-difference", "1/16 .. 4095 px"},
+    Field{"iterations", "--diffusion-iterations", "1 .. 100"},
+    Field{"edge_q4", "--diffusion-edge", "1/16 .. 15 px"},
+};
+
+[[noreturn]] void refuse(std::string_view field)
+{
+    const auto *found = std::find_if(kFields.begin(), kFields.end(), [&](const Field &f) { return f.field == field; });
+    if (found == kFields.end()) {
+        throw InputError("command line", std::string(field), "out of range");
+    }
+    throw InputError("command line", found->option, std::string("takes ") + found->takes);
+}
+
+/* Zero would mean the default, so it is refused where it is not a value of its own. */
+template <typename T> T narrow(long value, std::string_view field)
+{
+    if (value <= 0 || value > static_cast<long>(std::numeric_limits<T>::max())) {
+        refuse(field);
+    }
+    return static_cast<T>(value);
+}
+
+template <typename T> T sixteenths(double px, std::string_view field)
+{
+    if (!(px > 0 && px < 65536)) {
+        refuse(field);
+    }
+    return narrow<T>(std::lround(px * TSR_DISPARITY_ONE_Q4), field);
+}
+
+std::uint8_t read_test(const std::string &text, std::string_view field)
+{
+    if (text == "off") {
+        return TSR_MATCH_TEST_OFF;
+    }
+    int value = 0;
+    const char *end = text.data() + text.size();
+    const auto [at, error] = std::from_chars(text.data(), end, value);
+    if (error != std::errc() || at != end || value == TSR_MATCH_TEST_OFF) {
+        refuse(field);
+    }
+    return narrow<std::uint8_t>(value, field);
+}
+
+/* The entry of a table with this name; refused with all names if there is none. */
+template <typename Table>
+const typename Table::value_type &find_name(const Table &table, const std::string &name, const char *option)
+{
+    std::string names;
+    for (const auto &entry : table) {
+        if (entry.name == name) {
+            return entry;
+        }
+        names += (names.empty() ? "" : ", ") + std::string(entry.name);
+    }
+    throw InputError("command line", option, "'" + name + "' is none of: " + names);
+}
+
+tsr_refine_config read_refine(const MatchOptions &options)
+{
+    tsr_refine_config config = {};
+    const std::vector<std::string> steps = refine_steps(options);
+    if (steps.size() > TSR_REFINE_STEPS_MAX) {
+        throw InputError("command line", "--refine", "at most " + std::to_string(TSR_REFINE_STEPS_MAX) + " filters");
+    }
+    for (std::size_t i = 0; i < steps.size(); i++) {
+        config.steps[i] = static_cast<std::uint8_t>(find_name(kSteps, steps[i], "--refine").step);
+    }
+    config.speckle.min_size = narrow<std::uint16_t>(options.speckle_size, "min_size");
+    config.speckle.max_difference_q4 = sixteenths<std::uint16_t>(options.speckle_difference_px, "max_difference_q4");
+    config.diffusion.iterations = narrow<std::uint8_t>(options.diffusion_iterations, "iterations");
+    config.diffusion.edge_q4 = sixteenths<std::uint8_t>(options.diffusion_edge_px, "edge_q4");
+    return config;
+}
+
+} // namespace
+
+void declare_match_options(CLI::App &command, MatchOptions &options)
+{
+    command.add_option("left", options.left, "left picture, rectified: PGM, PNG or JPEG")->required();
+    command.add_option("right", options.right, "right picture, of the same size")->required();
+    command.add_option("--disparities", options.disparities, "searched disparities, px")->required();
+    command.add_option("--window", options.window, "side of the window, px")->capture_default_str();
+    command.add_option("--mode", options.mode, "what is compared")->capture_default_str();
+    command
+        .add_option("--refine", options.refine,
+                    "filters of the map in order, with commas, or none: median3 median5 speckle fill gaussian3 "
+                    "gaussian5 diffusion")
+        ->capture_default_str();
+    command.add_option("--search-start", options.search_start, "first disparity searched, px")->capture_default_str();
+    command.add_option("--uniqueness", options.uniqueness, "percent, or off")->capture_default_str();
+    command.add_option("--texture", options.texture, "least texture, or off")->capture_default_str();
+    command.add_option("--lr", options.lr, "left-right tolerance, px, or off")->capture_default_str();
+    command.add_option("--speckle-size", options.speckle_size, "smallest island kept, px")->capture_default_str();
+    command.add_option("--speckle-difference", options.speckle_difference_px, "largest step inside an island, px")
+        ->capture_default_str();
+    command.add_option("--diffusion-iterations", options.diffusion_iterations, "how often")->capture_default_str();
+    command.add_option("--diffusion-edge", options.diffusion_edge_px, "what counts as an edge, px")
+        ->capture_default_str();
+    command.add_option("-o,--out", options.out, "the map: .pfm, or .png of 16 bits, px = value / 256")->required();
+    command.add_option("--png", options.picture, "the map in colours, a PNG to look at");
+    command.add_flag("--json", options.json, "print JSON");
+}
+
+std::vector<std::string> refine_steps(const MatchOptions &options)
+{
+    std::vector<std::string> steps;
+    std::size_t begin = 0;
+    while (options.refine != "none" && begin <= options.refine.size()) {
+        const std::size_t end = std::min(options.refine.find(',', begin), options.refine.size());
+        steps.push_back(options.refine.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return steps;
+}
+
+StereoOptions read_match_options(const MatchOptions &options, const ImageSize &size)
+{
+    if (size.width < TSR_MATCH_DISPARITIES_MIN || size.width > TSR_IMAGE_WIDTH_MAX || size.height < 5 ||
+        size.height > TSR_IMAGE_HEIGHT_MAX) {
+        throw InputError(options.left.string(), "size",
+                         std::to_string(size.width) + "x" + std::to_string(size.height) +
+                             ", the matcher takes 16x5 to 640x480");
+    }
+    StereoOptions stereo;
+    stereo.match.width = static_cast<std::uint16_t>(size.width);
+    stereo.match.height = static_cast<std::uint16_t>(size.height);
+    stereo.match.disparities = narrow<std::uint16_t>(options.disparities, "disparities");
+    stereo.match.window = narrow<std::uint8_t>(options.window, "window");
+    stereo.match.uniqueness_percent = read_test(options.uniqueness, "uniqueness_percent");
+    stereo.match.texture_min = read_test(options.texture, "texture_min");
+    stereo.match.lr_tolerance_px = read_test(options.lr, "lr_tolerance_px");
+    stereo.match.search_start_px =
+        static_cast<std::int16_t>(std::clamp(options.search_start, -TSR_IMAGE_WIDTH_MAX, +TSR_IMAGE_WIDTH_MAX));
+    find_name(kModes, options.mode, "--mode").select(stereo.match);
+    stereo.refine = read_refine(options);
+    if (const std::string field = StereoPipeline::bad_field(stereo); !field.empty()) {
+        refuse(field);
+    }
+    return stereo;
+}
+
+} // namespace tsr

@@ -1,0 +1,53 @@
+/*
+ * The command line of `tarsier match`.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_TARSIER_MATCH_OPTIONS_H
+#define TSR_TARSIER_MATCH_OPTIONS_H
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "tsr/host/image_file.h"
+#include "tsr/stereo/stereo_pipeline.h"
+
+namespace tsr
+{
+
+/* As typed. */
+struct MatchOptions {
+    std::filesystem::path left;
+    std::filesystem::path right;
+    std::filesystem::path out;
+    std::filesystem::path picture;
+    int disparities = 0;
+    int window = 9;
+    std::string mode = "sad";
+    std::string refine = "median3";
+    int search_start = 0;
+    std::string uniqueness = "15";
+    std::string texture = "1";
+    std::string lr = "1";
+    int speckle_size = 50;
+    double speckle_difference_px = 1;
+    int diffusion_iterations = 5;
+    double diffusion_edge_px = 1;
+    bool json = false;
+};
+
+void declare_match_options(CLI::App &command, MatchOptions &options);
+
+/* The steps of --refine, without "none". */
+std::vector<std::string> refine_steps(const MatchOptions &options);
+
+/* What the pipeline takes. Throws InputError naming the option that is out of
+ * its range, or the left picture if the matcher cannot take its size. */
+StereoOptions read_match_options(const MatchOptions &options, const ImageSize &size);
+
+} // namespace tsr
+
+#endif
