@@ -16,6 +16,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "match_smooth.h"
 #include "match_stages.h"
 
 #define DISPARITIES_DEFAULT 32
@@ -23,6 +24,7 @@
 #define WINDOW_MIN 5
 #define CAP_ROOM 127 /* cap * window <= 127: column sums of 2 cap fit 8 bits */
 #define UNIQUENESS_DEFAULT 15
+#define UNIQUENESS_DEFAULT_SMOOTH 25
 #define UNIQUENESS_MAX 100
 #define TEXTURE_DEFAULT 1
 #define TOLERANCE_DEFAULT 1
@@ -33,13 +35,20 @@ static uint8_t value_or(uint8_t value, uint8_t fallback)
     return value != 0 ? value : fallback;
 }
 
+static bool is_census(const struct tsr_match_config *config)
+{
+    return config->mode == TSR_MATCH_CENSUS || config->mode == TSR_MATCH_SMOOTH;
+}
+
 static struct tsr_match_config resolve(const struct tsr_match_config *config)
 {
     struct tsr_match_config resolved = *config;
     resolved.disparities = config->disparities != 0 ? config->disparities : DISPARITIES_DEFAULT;
-    resolved.window = value_or(config->window, WINDOW_DEFAULT);
+    bool smooth = config->mode == TSR_MATCH_SMOOTH;
+    resolved.window = smooth ? TSR_MATCH_SMOOTH_WINDOW : value_or(config->window, WINDOW_DEFAULT);
     resolved.prefilter_cap = value_or(config->prefilter_cap, (uint8_t)(CAP_ROOM / resolved.window));
-    resolved.uniqueness_percent = value_or(config->uniqueness_percent, UNIQUENESS_DEFAULT);
+    resolved.uniqueness_percent =
+        value_or(config->uniqueness_percent, smooth ? UNIQUENESS_DEFAULT_SMOOTH : UNIQUENESS_DEFAULT);
     resolved.texture_min = value_or(config->texture_min, TEXTURE_DEFAULT);
     resolved.lr_tolerance_px = value_or(config->lr_tolerance_px, TOLERANCE_DEFAULT);
     return resolved;
@@ -79,6 +88,9 @@ static const char *bad_field(const struct tsr_match_config *config)
     if (is_above(config->lr_tolerance_px, TEST_MAX)) {
         return "lr_tolerance_px";
     }
+    if (config->mode != TSR_MATCH_SAD && !is_census(config)) {
+        return "mode";
+    }
     int room = config->width - config->disparities;
     if (config->search_start_px < -room || config->search_start_px > room) {
         return "search_start_px";
@@ -105,6 +117,9 @@ size_t tsr_match_scratch_len(const struct tsr_match_config *config)
         return 0;
     }
     struct tsr_match_config resolved = resolve(config);
+    if (is_census(&resolved)) {
+        return tsr_match_smooth_scratch_len(&resolved);
+    }
     return TSR_MATCH_SCRATCH_LEN(resolved.width, resolved.disparities);
 }
 
@@ -225,7 +240,9 @@ enum tsr_status tsr_match_run(struct tsr_match *match, uint16_t rows)
     uint16_t total = tsr_match_rows_total(match);
     for (; rows > 0 && match->rows_done < total; rows--, match->rows_done++) {
         unsigned row = match->rows_done;
-        if (row < height) {
+        if (is_census(&match->config)) {
+            tsr_match_smooth_step(match, row);
+        } else if (row < height) {
             tsr_match_prefilter_row(match, row);
         } else if (row < height + radius) {
             warm_up(match, row - height, radius);
@@ -243,5 +260,8 @@ uint16_t tsr_match_rows_done(const struct tsr_match *match)
 
 uint16_t tsr_match_rows_total(const struct tsr_match *match)
 {
+    if (is_census(&match->config)) {
+        return (uint16_t)tsr_match_smooth_rows_total(&match->config);
+    }
     return (uint16_t)(2u * match->config.height + match->config.window / 2u);
 }

@@ -37,17 +37,28 @@
 /* Switches the uniqueness, texture or left-right test off. */
 #define TSR_MATCH_TEST_OFF UINT8_C(255)
 
+/* How two pixels are compared and their costs combined. */
+enum tsr_match_mode {
+    TSR_MATCH_SAD,    /* as above */
+    TSR_MATCH_SAD8,   /* refused: no code for it */
+    TSR_MATCH_RAW,    /* refused: no code for it */
+    TSR_MATCH_SSD,    /* refused: no code for it */
+    TSR_MATCH_CENSUS, /* census descriptors over the window: light may differ; docs/math.md, eq. (47) */
+    TSR_MATCH_SMOOTH, /* census descriptors along three causal paths; eqs. (42) to (46) */
+};
+
 /* Zero in a field means the default named beside it. */
 struct tsr_match_config {
     uint16_t width;             /* px, disparities .. TSR_IMAGE_WIDTH_MAX; no default */
     uint16_t height;            /* px, window .. TSR_IMAGE_HEIGHT_MAX; no default */
     uint16_t disparities;       /* D, searched disparities, 16 .. 128, a multiple of 8; default 32 */
-    uint8_t window;             /* px, odd, 5 .. 15; default 9 */
+    uint8_t window;             /* px, odd, 5 .. 15; default 9; smooth does not use it (it becomes 7) */
     uint8_t prefilter_cap;      /* 1 .. 127 / window (2 cap window <= 255); default the largest */
-    uint8_t uniqueness_percent; /* 1 .. 100, or off; default 15 */
+    uint8_t uniqueness_percent; /* 1 .. 100, or off; default 15, in smooth 25 */
     uint8_t texture_min;        /* least sum of |P_left - cap| over the window, in units of window px, 1 .. 127, or
                                    off; default 1 */
     uint8_t lr_tolerance_px;    /* 1 .. 127, or off; default 1 */
+    uint8_t mode;               /* enum tsr_match_mode; default TSR_MATCH_SAD */
     int16_t search_start_px;    /* s, -(width - disparities) .. width - disparities; default 0 */
 };
 
@@ -65,7 +76,7 @@ struct tsr_match {
  * ("config" for a null config). *field is a static string. */
 enum tsr_status tsr_match_check(const struct tsr_match_config *config, const char **field);
 
-/* Scratch bytes, from resolved values and from a configuration (0 if it does
+/* Scratch bytes of the SAD mode, from resolved values, and of any from a configuration (0 if it does
  * not check): column sums, five rows of bytes, the sums of a pixel twice. */
 #define TSR_MATCH_SCRATCH_LEN(width, disparities)                                                                      \
     ((size_t)(width) * ((size_t)(disparities) + 5u) + 4u * (size_t)(disparities))
@@ -124,6 +135,8 @@ enum tsr_status tsr_match_start(struct tsr_match *match, const struct tsr_match_
 
 /*
  * Continue for at most rows rows of work, of tsr_match_rows_total() in all:
+ *
+ * in the SAD mode
  *
  *   height      prefilter rows, each about 52 instructions per pixel (both frames)
  *   window/2    warm-up rows, each about 15 per pixel and disparity
