@@ -16,6 +16,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "match_smooth.h"
 #include "match_stages.h"
 
 #define DISPARITIES_DEFAULT 32
@@ -24,6 +25,7 @@
 #define CAP_ROOM 63       /* cap * window <= 63: column sums of 2 cap, and their differences, fit 8 bits with a sign */
 #define SAD8_CAP_ROOM 127 /* cap * window^2 <= 127: window sums fit 8 bits */
 #define UNIQUENESS_DEFAULT 15
+#define UNIQUENESS_DEFAULT_SMOOTH 25
 #define UNIQUENESS_MAX 100
 #define TEXTURE_DEFAULT 1
 #define TOLERANCE_DEFAULT 1
@@ -42,13 +44,20 @@ static uint8_t cap_max(const struct tsr_match_config *config)
     return (uint8_t)(config->mode == TSR_MATCH_SAD8 && by_window < by_columns ? by_window : by_columns);
 }
 
+static bool is_census(const struct tsr_match_config *config)
+{
+    return config->mode == TSR_MATCH_CENSUS || config->mode == TSR_MATCH_SMOOTH;
+}
+
 static struct tsr_match_config resolve(const struct tsr_match_config *config)
 {
     struct tsr_match_config resolved = *config;
     resolved.disparities = config->disparities != 0 ? config->disparities : DISPARITIES_DEFAULT;
-    resolved.window = value_or(config->window, WINDOW_DEFAULT);
+    bool smooth = config->mode == TSR_MATCH_SMOOTH;
+    resolved.window = smooth ? TSR_MATCH_SMOOTH_WINDOW : value_or(config->window, WINDOW_DEFAULT);
     resolved.prefilter_cap = value_or(config->prefilter_cap, cap_max(&resolved));
-    resolved.uniqueness_percent = value_or(config->uniqueness_percent, UNIQUENESS_DEFAULT);
+    resolved.uniqueness_percent =
+        value_or(config->uniqueness_percent, smooth ? UNIQUENESS_DEFAULT_SMOOTH : UNIQUENESS_DEFAULT);
     resolved.texture_min = value_or(config->texture_min, TEXTURE_DEFAULT);
     resolved.lr_tolerance_px = value_or(config->lr_tolerance_px, TOLERANCE_DEFAULT);
     resolved.kernel = config->kernel != NULL ? config->kernel : tsr_match_kernel_at(0);
@@ -77,7 +86,7 @@ static const char *bad_field(const struct tsr_match_config *config)
         config->window > config->height) {
         return "window";
     }
-    if (config->mode > TSR_MATCH_SAD8) {
+    if (config->mode > TSR_MATCH_SMOOTH) {
         return "mode";
     }
     if (cap_max(config) == 0) {
@@ -121,6 +130,9 @@ size_t tsr_match_scratch_len(const struct tsr_match_config *config)
         return 0;
     }
     struct tsr_match_config resolved = resolve(config);
+    if (is_census(&resolved)) {
+        return tsr_match_smooth_scratch_len(&resolved);
+    }
     return TSR_MATCH_SCRATCH_LEN(resolved.width, resolved.disparities);
 }
 
@@ -241,7 +253,9 @@ enum tsr_status tsr_match_run(struct tsr_match *match, uint16_t rows)
     uint16_t total = tsr_match_rows_total(match);
     for (; rows > 0 && match->rows_done < total; rows--, match->rows_done++) {
         unsigned row = match->rows_done;
-        if (row < height) {
+        if (is_census(&match->config)) {
+            tsr_match_smooth_step(match, row);
+        } else if (row < height) {
             match->kernel->prefilter_row(match, row);
         } else if (row < height + radius) {
             warm_up(match, row - height, radius);
@@ -259,5 +273,8 @@ uint16_t tsr_match_rows_done(const struct tsr_match *match)
 
 uint16_t tsr_match_rows_total(const struct tsr_match *match)
 {
+    if (is_census(&match->config)) {
+        return (uint16_t)tsr_match_smooth_rows_total(&match->config);
+    }
     return (uint16_t)(2u * match->config.height + match->config.window / 2u);
 }

@@ -92,7 +92,7 @@ def small_pair(folder):
     map_quality.write_png(folder / "r.png", right)
     for start, options, settings in ((0, [], (15, 1, 1)), (-3, ["--uniqueness", "off", "--texture", 5], (255, 5, 1)),
                                      (4, ["--uniqueness", 3, "--lr", "off"], (3, 1, 255))):
-        wanted = vision_reference.match(left, right, 16, 7, 127 // 7, *settings, start)
+        wanted = vision_reference.match(left, right, 16, 7, 63 // 7, *settings, start)
         wanted = refine_reference.fill(refine_reference.speckle(refine_reference.median(wanted, 5), 12, 8))
         match_json(folder / "l.pgm", folder / "r.png", "--disparities", 16, "--window", 7, "--search-start", start,
                    *options, "--refine", "median5,speckle,fill", "--speckle-size", 12, "--speckle-difference", 0.5,

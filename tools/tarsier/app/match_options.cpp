@@ -23,7 +23,12 @@ struct Mode {
     std::string_view name;
     void (*select)(tsr_match_config &);
 };
-constexpr std::array kModes = {Mode{"sad", [](tsr_match_config &) {}}};
+constexpr std::array kModes = {
+    Mode{"sad", [](tsr_match_config &config) { config.mode = TSR_MATCH_SAD; }},
+    Mode{"sad8", [](tsr_match_config &config) { config.mode = TSR_MATCH_SAD8; }},
+    Mode{"census", [](tsr_match_config &config) { config.mode = TSR_MATCH_CENSUS; }},
+    Mode{"smooth", [](tsr_match_config &config) { config.mode = TSR_MATCH_SMOOTH; }},
+};
 
 struct Step {
     std::string_view name;

@@ -37,9 +37,12 @@
 /* Switches the uniqueness, texture or left-right test off. */
 #define TSR_MATCH_TEST_OFF UINT8_C(255)
 
+/* How two pixels are compared and their costs combined. */
 enum tsr_match_mode {
-    TSR_MATCH_SAD,  /* 16-bit window sums */
-    TSR_MATCH_SAD8, /* 8-bit window sums, fastest: window^2 * 2 cap <= 255, so windows up to 11 */
+    TSR_MATCH_SAD,    /* as above, 16-bit window sums */
+    TSR_MATCH_SAD8,   /* the same where window^2 * 2 cap <= 255, so windows up to 11: window sums fit 8 bits */
+    TSR_MATCH_CENSUS, /* census descriptors over the window: light may differ; docs/math.md, eq. (47) */
+    TSR_MATCH_SMOOTH, /* census descriptors along three causal paths; eqs. (42) to (46) */
 };
 
 /* An implementation of the matcher for one instruction set, see below. */
@@ -50,11 +53,11 @@ struct tsr_match_config {
     uint16_t width;             /* px, disparities .. TSR_IMAGE_WIDTH_MAX; no default */
     uint16_t height;            /* px, window .. TSR_IMAGE_HEIGHT_MAX; no default */
     uint16_t disparities;       /* D, searched disparities, 16 .. 128, a multiple of 8; default 32 */
-    uint8_t window;             /* px, odd, 5 .. 15; default 9 */
+    uint8_t window;             /* px, odd, 5 .. 15; default 9; smooth does not use it (it becomes 7) */
     uint8_t mode;               /* enum tsr_match_mode; default TSR_MATCH_SAD */
     uint8_t prefilter_cap;      /* 1 .. 63 / window (2 cap window <= 127), with SAD8 also <= 127 / window^2;
                                    default the largest */
-    uint8_t uniqueness_percent; /* 1 .. 100, or off; default 15 */
+    uint8_t uniqueness_percent; /* 1 .. 100, or off; default 15, in smooth 25 */
     uint8_t texture_min;        /* least sum of |P_left - cap| over the window, in units of window px, 1 .. 127, or
                                    off; default 1 */
     uint8_t lr_tolerance_px;    /* 1 .. 127, or off; default 1 */
@@ -85,7 +88,7 @@ struct tsr_match {
  * ("config" for a null config). *field is a static string. */
 enum tsr_status tsr_match_check(const struct tsr_match_config *config, const char **field);
 
-/* Scratch bytes, from resolved values and from a configuration (0 if it does
+/* Scratch bytes of the SAD modes, from resolved values, and of any from a configuration (0 if it does
  * not check): column sums, four rows of bytes, and room to work on one pixel. */
 #define TSR_MATCH_SCRATCH_LEN(width, disparities)                                                                      \
     ((size_t)(width) * ((size_t)(disparities) + 4u) + 4u * (size_t)(disparities) + 8u)
@@ -144,6 +147,8 @@ enum tsr_status tsr_match_start(struct tsr_match *match, const struct tsr_match_
 
 /*
  * Continue for at most rows rows of work, of tsr_match_rows_total() in all:
+ *
+ * in the SAD mode
  *
  *   height      prefilter rows, each about 52 instructions per pixel (both frames)
  *   window/2    warm-up rows, each about 15 per pixel and disparity

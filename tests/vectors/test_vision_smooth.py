@@ -1,0 +1,142 @@
+"""The matcher's census and smooth modes against tests/support/vision_smooth_reference.py: equal bit for bit.
+
+SEED replays a run: SEED=n python3 tests/vectors/test_vision_smooth.py
+
+SPDX-License-Identifier: Apache-2.0
+"""
+import ctypes
+import os
+import pathlib
+import sys
+
+try:
+    import numpy as np
+except ImportError:
+    print("tarsier skipped: test_vision_smooth: python3-numpy is not installed")
+    sys.exit(77)
+
+SOURCE = pathlib.Path(os.environ.get("TSR_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
+sys.path.insert(0, str(SOURCE / "tests" / "support"))
+import vision_smooth_reference as reference  # noqa: E402
+
+OK, AGAIN, CENSUS, SMOOTH = 0, 1, 2, 3
+STATE_LEN = 512  # more than the module's struct
+U8, U16, I16, SIZE = ctypes.c_uint8, ctypes.c_uint16, ctypes.c_int16, ctypes.c_size_t
+SEED = int(os.environ.get("SEED", "1"))
+RNG = np.random.default_rng(SEED)
+
+
+class Gray(ctypes.Structure):
+    _fields_ = [("pixels", ctypes.c_void_p), ("width", U16), ("height", U16), ("stride", U16)]
+
+
+class MatchConfig(ctypes.Structure):
+    _fields_ = [("width", U16), ("height", U16), ("disparities", U16), ("window", U8), ("mode", U8), ("prefilter_cap", U8),
+                ("uniqueness_percent", U8), ("texture_min", U8), ("lr_tolerance_px", U8), ("search_start_px", I16),
+                ("kernel", ctypes.c_void_p)]
+
+
+def load_library():
+    build = pathlib.Path(os.environ.get("TSR_BUILD", "build"))
+    found = sorted(build.rglob("libtsr_firmware.so"))
+    if not found:
+        sys.exit(f"no libtsr_firmware.so under {build}")
+    library = ctypes.CDLL(str(found[0]))
+    library.tsr_match_scratch_len.restype = SIZE
+    library.tsr_match_pair_len.restype = SIZE
+    library.tsr_match_start.argtypes = [ctypes.c_void_p, ctypes.c_void_p, Gray, Gray, ctypes.c_void_p, SIZE,
+                                        ctypes.c_void_p, SIZE]
+    return library
+
+
+LIB = load_library()
+
+
+def pointer(array):
+    return array.ctypes.data_as(ctypes.c_void_p)
+
+
+def run_match(left, right, config, in_pair_layout):
+    """The map, the frames in the pair layout or apart from it with any stride."""
+    height, width = left.shape
+    if in_pair_layout:
+        rows_above = (7 if config.mode == SMOOTH else config.window or 9) // 2 + 1
+        pair = RNG.integers(0, 256, (height + rows_above, 2 * width), np.uint8)
+        assert pair.size == LIB.tsr_match_pair_len(ctypes.byref(config))
+        pair[rows_above:, :width], pair[rows_above:, width:] = left, right
+        views = [Gray(pair.ctypes.data + 2 * width * rows_above + i * width, width, height, 2 * width) for i in (0, 1)]
+        result = pair.reshape(-1)[:2 * width * height].view(np.uint16).reshape(height, width)
+    else:
+        strides = [width + int(e) for e in RNG.integers(0, 9, 2)]
+        frames = [np.pad(p, ((0, 0), (0, s - width)), constant_values=77) for p, s in zip((left, right), strides)]
+        views = [Gray(f.ctypes.data, width, height, f.shape[1]) for f in frames]
+        result = np.zeros((height, width), np.uint16)
+    scratch = RNG.integers(0, 256, LIB.tsr_match_scratch_len(ctypes.byref(config)), np.uint8)
+    state = np.zeros(STATE_LEN, np.uint8)
+    assert LIB.tsr_match_start(pointer(state), ctypes.byref(config), *views, pointer(result), result.size,
+                               pointer(scratch), scratch.size) == OK
+    status = AGAIN
+    while status == AGAIN:
+        status = LIB.tsr_match_run(pointer(state), U16(int(RNG.integers(1, height))))
+    assert status == OK, status
+    return result
+
+
+def seen_twice(height, width, shift):
+    """A scene, a nearer patch, other light on the right, and noise."""
+    scene = RNG.integers(0, 256, (height, 3 * width))
+    left, right = scene[:, width:2 * width].copy(), scene[:, width + shift:2 * width + shift].copy()
+    y, x = height // 3, width // 3
+    patch = RNG.integers(0, 256, (height // 3, width // 4))
+    near = max(0, min(width - patch.shape[1], x - shift - 5))
+    left[y:y + patch.shape[0], x:x + patch.shape[1]] = patch
+    right[y:y + patch.shape[0], near:near + patch.shape[1]] = patch
+    noise = RNG.normal(0, 2, (2, height, width))
+    return [np.clip(np.rint(v * gain + n), 0, 255).astype(np.uint8)
+            for v, gain, n in zip((left, right), (0.8, 1), noise)]
+
+
+def pictures(height, width, shift):
+    yield RNG.integers(0, 256, (2, height, width), np.uint8)
+    yield RNG.integers(0, 2, (2, height, width), np.uint8) * 255
+    yield np.full((2, height, width), 77, np.uint8)
+    yield np.tile((np.arange(width) * 3 % 256).astype(np.uint8), (2, height, 1))
+    yield np.kron(RNG.integers(0, 256, (2, height // 4 + 1, width // 4 + 1)),
+                  np.ones((1, 4, 4), np.int64))[:, :height, :width].astype(np.uint8)
+    yield seen_twice(height, width, shift)
+
+
+def check(left, right, config, in_pair_layout):
+    got = run_match(left, right, config, in_pair_layout)
+    smooth = config.mode == SMOOTH
+    uniqueness = config.uniqueness_percent or (25 if smooth else 15)
+    search = left, right, config.disparities, config.search_start_px
+    sums = reference.smooth_sums(*search) if smooth else reference.census_sums(*search, config.window or 9)
+    assert sums.max() <= (204 if smooth else 3600)
+    wanted = reference.choose(sums, uniqueness, config.lr_tolerance_px or 1, config.search_start_px)
+    fields = {name: getattr(config, name) for name, _ in config._fields_}
+    assert np.array_equal(got, wanted), (fields, np.argwhere(got != wanted)[:5].tolist())
+    return int((wanted != reference.INVALID).sum())
+
+
+def main():
+    print(f"replay: SEED={SEED} python3 tests/vectors/test_vision_smooth.py")
+    cases = valid = 0
+    for mode in (CENSUS, SMOOTH):
+        for disparities, width, height in ((16, 16, 9), (16, 33, 15), (24, 37, 17), (32, 48, 20), (128, 131, 7)):
+            room = width - disparities
+            for start in sorted({0, room, -room, room // 2, -(room // 3)}):
+                for left, right in pictures(height, width, min(6 + start, width)):
+                    if RNG.random() < 0.5:
+                        continue
+                    windows = [w for w in (0, 5, 7, 11, 15) if (w or 9) <= height]
+                    config = MatchConfig(width, height, disparities, int(RNG.choice(windows)) if windows else 5,
+                                         mode, 0, int(RNG.choice([0, 1, 100, 255])), 0, int(RNG.choice([0, 3, 255])),
+                                         start)
+                    valid += check(left, right, config, width % 2 == 0 and RNG.random() < 0.5)
+                    cases += 1
+    print(f"census and smooth: {cases} pairs, {valid} valid pixels")
+
+
+if __name__ == "__main__":
+    main()
