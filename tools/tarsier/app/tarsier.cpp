@@ -1,24 +1,48 @@
 /*
  * tarsier: the tools.
  *
- *   tarsier demo-scene --pictures DIR --out DIR   recorded folders and site of the demo
+ *   tarsier demo-scene --pictures DIR --out DIR        recorded folders and site of the demo
+ *   tarsier rectify-table CALIBRATION... -o TABLE      a node's rectification from a calibration
  *
  * SPDX-License-Identifier: Apache-2.0
  */
 
 #include "tsr/host/command_line.h"
+#include "tsr/stage/rectify_command.h"
 #include "tsr/stage/stage.h"
 
 namespace
 {
 
-void declare(CLI::App &app, tsr::StageOptions &stage)
+void declare_demo_scene(CLI::App &command, tsr::StageOptions &stage)
 {
-    app.require_subcommand(1);
-    CLI::App *demo_scene = app.add_subcommand("demo-scene", "write the demo's recorded frames and site");
-    demo_scene->add_option("--pictures", stage.pictures, "folder of OpenCV's example data")->required();
-    demo_scene->add_option("--out", stage.out, "folder to write")->required();
-    demo_scene->add_option("--seed", stage.seed, "of the sensor noise and the site");
+    command.add_option("--pictures", stage.pictures, "folder of OpenCV's example data")->required();
+    command.add_option("--out", stage.out, "folder to write")->required();
+    command.add_option("--seed", stage.seed, "of the sensor noise and the site");
+}
+
+void declare_rectify_table(CLI::App &command, tsr::RectifyTableOptions &options)
+{
+    command
+        .add_option("CALIBRATION", options.calibration,
+                    "OpenCV YAML (one file or two), ROS camera_info YAML (left, right), BoofCV stereo YAML or "
+                    "Middlebury calib.txt")
+        ->required()
+        ->expected(1, 2);
+    command.add_option("-o,--out", options.table, "table to write")->required();
+    command.add_option("--c-header", options.c_header, "the table as a C array as well");
+    command.add_option("--width", options.width, "of the rectified views, px; default: as calibrated");
+    command.add_option("--height", options.height, "of the rectified views, px");
+    command.add_option("--source", options.source, "WIDTHxHEIGHT of the camera's frames; default: as the views");
+    command.add_option("--calibrated", options.calibrated, "WIDTHxHEIGHT of the calibrated pictures, if no file says");
+    command.add_option("--step", options.step, "px between control points; default: the widest that is exact enough")
+        ->check(CLI::IsMember({8, 16, 32}));
+    command.add_option("--zoom", options.zoom, "0: no pixel from outside the frame, 1: the whole frame is in view")
+        ->check(CLI::Range(0.0, 1.0));
+    command.add_flag("--separate-centres", options.separate_centres, "each view has its own cx, so d0 is not 0");
+    command.add_option("--unit-mm", options.unit_mm, "mm in one unit of the calibration's T")
+        ->check(CLI::PositiveNumber);
+    command.add_flag("--json", options.json, "print JSON instead of lines for site.toml");
 }
 
 } // namespace
@@ -26,10 +50,21 @@ void declare(CLI::App &app, tsr::StageOptions &stage)
 int main(int argc, char **argv)
 {
     tsr::StageOptions stage;
+    tsr::RectifyTableOptions rectify;
+    CLI::App *rectify_table = nullptr;
+    const auto declare = [&](CLI::App &app) {
+        app.require_subcommand(1);
+        declare_demo_scene(*app.add_subcommand("demo-scene", "write the demo's recorded frames and site"), stage);
+        rectify_table = app.add_subcommand("rectify-table", "make a node's rectification table from a calibration");
+        declare_rectify_table(*rectify_table, rectify);
+    };
     const auto run = [&] {
-        tsr::write_stage(stage);
+        if (rectify_table->parsed()) {
+            tsr::write_rectify_table(rectify);
+        } else {
+            tsr::write_stage(stage);
+        }
         return 0;
     };
-    return tsr::run_command_line({"tarsier", "Tools of Tarsier.", [&](CLI::App &app) { declare(app, stage); }, run},
-                                 argc, argv);
+    return tsr::run_command_line({"tarsier", "Tools of Tarsier.", declare, run}, argc, argv);
 }

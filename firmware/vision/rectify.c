@@ -1,0 +1,192 @@
+/*
+ * Resampling of a view, row by row, into another frame or in place.
+ *
+ * In place, target row y overwrites source row y. Before that the source row is
+ * copied to the kept rows, a ring of the last rows_above + 1 of them; source
+ * rows below y are still in the frame.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include "tsr/vision/rectify.h"
+
+#include <stdbool.h>
+#include <string.h>
+
+#include "rectify_spline.h"
+
+#define POSITION_FRACTION_BITS 8
+#define POSITION_FRACTION 255
+
+/* What does not change along a row, and the pair of source rows in use. */
+struct sampler {
+    const struct tsr_rectify *rectify;
+    int32_t middle_q8[2];
+    int32_t last_q8[2];
+    unsigned y;         /* target row */
+    int32_t source_row; /* the upper one in use, -1 at first */
+    const uint8_t *upper;
+    const uint8_t *lower;
+};
+
+static bool has_shape(uint16_t width, uint16_t height, uint16_t stride, uint16_t table_width, uint16_t table_height)
+{
+    return width == table_width && height == table_height && stride >= width;
+}
+
+static bool is_known_side(enum tsr_rectify_side side)
+{
+    return side == TSR_RECTIFY_LEFT || side == TSR_RECTIFY_RIGHT;
+}
+
+enum tsr_status tsr_rectify_start(struct tsr_rectify *rectify, const struct tsr_rectify_table *table,
+                                  enum tsr_rectify_side side, struct tsr_gray_view source, struct tsr_gray target)
+{
+    if (rectify == NULL || table == NULL || source.pixels == NULL || target.pixels == NULL || !is_known_side(side)) {
+        return TSR_ERR_ARG;
+    }
+    if (!has_shape(source.width, source.height, source.stride, table->source_width, table->source_height) ||
+        !has_shape(target.width, target.height, target.stride, table->width, table->height)) {
+        return TSR_ERR_SIZE;
+    }
+    *rectify = (struct tsr_rectify){table, source, target, NULL, 0, 0, (uint8_t)side};
+    return TSR_OK;
+}
+
+enum tsr_status tsr_rectify_start_in_place(struct tsr_rectify *rectify, const struct tsr_rectify_table *table,
+                                           enum tsr_rectify_side side, struct tsr_gray frame, uint8_t *kept,
+                                           size_t kept_cap)
+{
+    if (kept == NULL) {
+        return TSR_ERR_ARG;
+    }
+    struct tsr_rectify begun;
+    enum tsr_status status =
+        tsr_rectify_start(rectify == NULL ? NULL : &begun, table, side, tsr_gray_as_view(frame), frame);
+    if (status != TSR_OK) {
+        return status;
+    }
+    if (kept_cap < TSR_RECTIFY_KEPT_LEN(frame.width, table->rows_above[side])) {
+        return TSR_ERR_NOBUF;
+    }
+    begun.kept = kept;
+    begun.kept_rows = (uint16_t)(table->rows_above[side] + 1u);
+    *rectify = begun;
+    return TSR_OK;
+}
+
+static const uint8_t *find_row(const struct tsr_rectify *rectify, unsigned y, unsigned source_row)
+{
+    if (rectify->kept != NULL && source_row <= y) {
+        return rectify->kept + (size_t)rectify->source.width * (source_row % rectify->kept_rows);
+    }
+    return rectify->source.pixels + (size_t)rectify->source.stride * source_row;
+}
+
+static void select_rows(struct sampler *sampler, int32_t source_row)
+{
+    const struct tsr_rectify *rectify = sampler->rectify;
+    unsigned upper = (unsigned)source_row;
+    unsigned lower = upper + 1u < rectify->source.height ? upper + 1u : upper;
+    sampler->source_row = source_row;
+    sampler->upper = find_row(rectify, sampler->y, upper);
+    sampler->lower = find_row(rectify, sampler->y, lower);
+}
+
+/* Eq. (66). */
+static uint8_t sample(struct sampler *sampler, int32_t x_q8, int32_t y_q8)
+{
+    int32_t source_row = y_q8 >> POSITION_FRACTION_BITS;
+    if (source_row != sampler->source_row) {
+        select_rows(sampler, source_row);
+    }
+    int32_t x_part = x_q8 & POSITION_FRACTION;
+    int32_t y_part = y_q8 & POSITION_FRACTION;
+    int32_t column = x_q8 >> POSITION_FRACTION_BITS;
+    int32_t next = column + (x_part != 0 ? 1 : 0);
+    int32_t upper = sampler->upper[column] * 256 + (sampler->upper[next] - sampler->upper[column]) * x_part;
+    int32_t lower = sampler->lower[column] * 256 + (sampler->lower[next] - sampler->lower[column]) * x_part;
+    return (uint8_t)((upper * 256 + (lower - upper) * y_part + 32768) >> 16);
+}
+
+static void step_cubic(struct tsr_rectify_cubic *cubic)
+{
+    cubic->position += cubic->first;
+    cubic->first += cubic->second;
+    cubic->second += cubic->third;
+}
+
+static void set_up_sampler(struct sampler *sampler, const struct tsr_rectify *rectify)
+{
+    const struct tsr_rectify_table *table = rectify->table;
+    sampler->rectify = rectify;
+    sampler->middle_q8[0] = table->source_width / 2 * 256;
+    sampler->middle_q8[1] = table->source_height / 2 * 256;
+    sampler->last_q8[0] = (table->source_width - 1) * 256;
+    sampler->last_q8[1] = (table->source_height - 1) * 256;
+}
+
+static void rectify_row(struct sampler *sampler, unsigned y)
+{
+    const struct tsr_rectify *rectify = sampler->rectify;
+    const unsigned width = rectify->table->width;
+    const unsigned step = 1u << rectify->table->step_log2;
+    uint8_t *target = rectify->target.pixels + (size_t)rectify->target.stride * y;
+    if (rectify->kept != NULL) {
+        memcpy(rectify->kept + (size_t)width * (y % rectify->kept_rows), target, width);
+    }
+    sampler->y = y;
+    sampler->source_row = -1;
+    struct tsr_rectify_row row;
+    struct tsr_rectify_cubic cubic[2];
+    tsr_rectify_row_start(&row, rectify->table, (enum tsr_rectify_side)rectify->side, y);
+    for (unsigned first = 0; first < width; first += step) {
+        const unsigned count = width - first < step ? width - first : step;
+        tsr_rectify_row_next_span(&row, cubic);
+        for (unsigned i = 0; i < count; i++) {
+            int32_t x_q8 = tsr_rectify_clip_position(cubic[0].position, sampler->middle_q8[0], sampler->last_q8[0]);
+            int32_t y_q8 = tsr_rectify_clip_position(cubic[1].position, sampler->middle_q8[1], sampler->last_q8[1]);
+            target[first + i] = sample(sampler, x_q8, y_q8);
+            step_cubic(&cubic[0]);
+            step_cubic(&cubic[1]);
+        }
+    }
+}
+
+enum tsr_status tsr_rectify_run(struct tsr_rectify *rectify, uint16_t rows)
+{
+    if (rectify == NULL || rows == 0) {
+        return TSR_ERR_ARG;
+    }
+    struct sampler sampler;
+    set_up_sampler(&sampler, rectify);
+    for (; rows > 0 && rectify->rows_done < rectify->table->height; rows--, rectify->rows_done++) {
+        rectify_row(&sampler, rectify->rows_done);
+    }
+    return rectify->rows_done < rectify->table->height ? TSR_AGAIN : TSR_OK;
+}
+
+uint16_t tsr_rectify_rows_done(const struct tsr_rectify *rectify)
+{
+    return rectify->rows_done;
+}
+
+void tsr_rectify_position(const struct tsr_rectify_table *table, enum tsr_rectify_side side, uint16_t x, uint16_t y,
+                          int32_t position_q8[2])
+{
+    const struct tsr_rectify rectify = {.table = table};
+    struct sampler sampler;
+    set_up_sampler(&sampler, &rectify);
+    struct tsr_rectify_row row;
+    struct tsr_rectify_cubic cubic[2];
+    tsr_rectify_row_start(&row, table, side, y);
+    for (unsigned span = 0; span <= (unsigned)x >> table->step_log2; span++) {
+        tsr_rectify_row_next_span(&row, cubic);
+    }
+    for (unsigned axis = 0; axis < 2; axis++) {
+        for (unsigned t = x & ((1u << table->step_log2) - 1u); t > 0; t--) {
+            step_cubic(&cubic[axis]);
+        }
+        position_q8[axis] =
+            tsr_rectify_clip_position(cubic[axis].position, sampler.middle_q8[axis], sampler.last_q8[axis]);
+    }
+}
