@@ -108,13 +108,6 @@ static uint8_t sample(struct sampler *sampler, int32_t x_q8, int32_t y_q8)
     return (uint8_t)((upper * 256 + (lower - upper) * y_part + 32768) >> 16);
 }
 
-static void step_cubic(struct tsr_rectify_cubic *cubic)
-{
-    cubic->position += cubic->first;
-    cubic->first += cubic->second;
-    cubic->second += cubic->third;
-}
-
 static void set_up_sampler(struct sampler *sampler, const struct tsr_rectify *rectify)
 {
     const struct tsr_rectify_table *table = rectify->table;
@@ -146,8 +139,8 @@ static void rectify_row(struct sampler *sampler, unsigned y)
             int32_t x_q8 = tsr_rectify_clip_position(cubic[0].position, sampler->middle_q8[0], sampler->last_q8[0]);
             int32_t y_q8 = tsr_rectify_clip_position(cubic[1].position, sampler->middle_q8[1], sampler->last_q8[1]);
             target[first + i] = sample(sampler, x_q8, y_q8);
-            step_cubic(&cubic[0]);
-            step_cubic(&cubic[1]);
+            tsr_rectify_step(&cubic[0]);
+            tsr_rectify_step(&cubic[1]);
         }
     }
 }
@@ -184,7 +177,7 @@ void tsr_rectify_position(const struct tsr_rectify_table *table, enum tsr_rectif
     }
     for (unsigned axis = 0; axis < 2; axis++) {
         for (unsigned t = x & ((1u << table->step_log2) - 1u); t > 0; t--) {
-            step_cubic(&cubic[axis]);
+            tsr_rectify_step(&cubic[axis]);
         }
         position_q8[axis] =
             tsr_rectify_clip_position(cubic[axis].position, sampler.middle_q8[axis], sampler.last_q8[axis]);

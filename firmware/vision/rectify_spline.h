@@ -40,6 +40,14 @@ void tsr_rectify_row_advance(struct tsr_rectify_row *row);
 /* The cubics of the next span, x first; docs/math.md, eq. (63). */
 void tsr_rectify_row_next_span(struct tsr_rectify_row *row, struct tsr_rectify_cubic cubic[2]);
 
+/* To the next pixel. */
+static inline void tsr_rectify_step(struct tsr_rectify_cubic *cubic)
+{
+    cubic->position += cubic->first;
+    cubic->first += cubic->second;
+    cubic->second += cubic->third;
+}
+
 /* floor(value / 2^shift). */
 static inline int32_t tsr_rectify_floor_shift(int32_t value, unsigned shift)
 {

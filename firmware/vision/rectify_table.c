@@ -12,7 +12,6 @@
 #include "tsr/vision/rectify.h"
 
 #define MAGIC_LEN 4u
-#define COEFFICIENT_FRACTION_BITS 13
 
 static const uint8_t magic[MAGIC_LEN] = {'T', 'S', 'R', 'M'};
 
@@ -35,30 +34,34 @@ static bool has_crc(const uint8_t *bytes, size_t len)
     return bytes[covered] == (crc & 0xffu) && bytes[covered + 1u] == crc >> 8;
 }
 
-/* The least row coefficient of y on target row y, rounded down to px. */
+/* The first source row that target row y reads, px, clipped to the source. */
 static int32_t first_row_read(const struct tsr_rectify_table *table, enum tsr_rectify_side side, unsigned y)
 {
+    const unsigned step = 1u << table->step_log2;
+    int32_t least = INT32_MAX;
     struct tsr_rectify_row row;
+    struct tsr_rectify_cubic cubic[2];
     tsr_rectify_row_start(&row, table, side, y);
-    int32_t least = row.coefficient[1][1] < row.coefficient[1][2] ? row.coefficient[1][1] : row.coefficient[1][2];
-    least = least < row.coefficient[1][3] ? least : row.coefficient[1][3];
-    for (size_t i = 3; i < TSR_RECTIFY_POINTS(table->width, table->step_log2); i++) {
-        tsr_rectify_row_advance(&row);
-        least = least < row.coefficient[1][3] ? least : row.coefficient[1][3];
+    for (unsigned first = 0; first < table->width; first += step) {
+        const unsigned count = table->width - first < step ? table->width - first : step;
+        tsr_rectify_row_next_span(&row, cubic);
+        for (unsigned i = 0; i < count; i++) {
+            const int32_t position = (int32_t)cubic[1].position;
+            least = least < position ? least : position;
+            tsr_rectify_step(&cubic[1]);
+        }
     }
-    /* Positions are sums of rounded differences, at most 1/256 px off the hull, and rounded to 1/256 px. */
-    int32_t slack = 2 << (COEFFICIENT_FRACTION_BITS - 8);
-    return tsr_rectify_floor_shift(least - slack, COEFFICIENT_FRACTION_BITS) + table->source_height / 2;
+    return tsr_rectify_clip_position((uint32_t)least, table->source_height / 2 * 256,
+                                     (table->source_height - 1) * 256) >>
+           8;
 }
 
 uint16_t tsr_rectify_measure_rows_above(const struct tsr_rectify_table *table, enum tsr_rectify_side side)
 {
     int32_t rows_above = 0;
     for (unsigned y = 0; y < table->height; y++) {
-        int32_t row = first_row_read(table, side, y);
-        row = row > 0 ? row : 0;
-        row = row < table->source_height ? row : table->source_height - 1;
-        rows_above = rows_above > (int32_t)y - row ? rows_above : (int32_t)y - row;
+        int32_t above = (int32_t)y - first_row_read(table, side, y);
+        rows_above = rows_above > above ? rows_above : above;
     }
     return (uint16_t)rows_above;
 }

@@ -99,9 +99,8 @@ struct tsr_rectify_table {
 enum tsr_status tsr_rectify_open(struct tsr_rectify_table *table, const uint8_t *bytes, size_t len);
 
 /*
- * How far above its own row any target row reads, px: the least n such that
- * every position of row y, clipped to the source, is at row y - n or below. A
- * bound from the hull of each row's control points, at most some rows too large.
+ * How far above its own row any target row reads, px: the least n >= 0 such that
+ * every position of every row y, clipped to the source, is at row y - n or below.
  *
  *   table  in, all but rows_above set, sizes and step in range
  */
