@@ -16,14 +16,11 @@
 
 #define POSITION_FRACTION_BITS 8
 #define POSITION_FRACTION 255
+#define NO_ROW (-1)
 
-/* What does not change along a row, and the pair of source rows in use. */
-struct sampler {
-    const struct tsr_rectify *rectify;
-    int32_t middle_q8[2];
-    int32_t last_q8[2];
-    unsigned y;         /* target row */
-    int32_t source_row; /* the upper one in use, -1 at first */
+/* The source rows that the last pixel was read from. */
+struct rows {
+    int32_t upper_row; /* px, NO_ROW: none yet */
     const uint8_t *upper;
     const uint8_t *lower;
 };
@@ -82,66 +79,60 @@ static const uint8_t *find_row(const struct tsr_rectify *rectify, unsigned y, un
     return rectify->source.pixels + (size_t)rectify->source.stride * source_row;
 }
 
-static void select_rows(struct sampler *sampler, int32_t source_row)
+static struct rows select_rows(const struct tsr_rectify *rectify, unsigned y, int32_t upper_row)
 {
-    const struct tsr_rectify *rectify = sampler->rectify;
-    unsigned upper = (unsigned)source_row;
+    unsigned upper = (unsigned)upper_row;
     unsigned lower = upper + 1u < rectify->source.height ? upper + 1u : upper;
-    sampler->source_row = source_row;
-    sampler->upper = find_row(rectify, sampler->y, upper);
-    sampler->lower = find_row(rectify, sampler->y, lower);
+    struct rows rows = {upper_row, find_row(rectify, y, upper), find_row(rectify, y, lower)};
+    return rows;
 }
 
 /* Eq. (66). */
-static uint8_t sample(struct sampler *sampler, int32_t x_q8, int32_t y_q8)
+static inline uint8_t sample(const struct rows *rows, int32_t x_q8, int32_t y_part)
 {
-    int32_t source_row = y_q8 >> POSITION_FRACTION_BITS;
-    if (source_row != sampler->source_row) {
-        select_rows(sampler, source_row);
-    }
-    int32_t x_part = x_q8 & POSITION_FRACTION;
-    int32_t y_part = y_q8 & POSITION_FRACTION;
     int32_t column = x_q8 >> POSITION_FRACTION_BITS;
+    int32_t x_part = x_q8 & POSITION_FRACTION;
     int32_t next = column + (x_part != 0 ? 1 : 0);
-    int32_t upper = sampler->upper[column] * 256 + (sampler->upper[next] - sampler->upper[column]) * x_part;
-    int32_t lower = sampler->lower[column] * 256 + (sampler->lower[next] - sampler->lower[column]) * x_part;
+    int32_t upper = rows->upper[column] * 256 + (rows->upper[next] - rows->upper[column]) * x_part;
+    int32_t lower = rows->lower[column] * 256 + (rows->lower[next] - rows->lower[column]) * x_part;
     return (uint8_t)((upper * 256 + (lower - upper) * y_part + 32768) >> 16);
 }
 
-static void set_up_sampler(struct sampler *sampler, const struct tsr_rectify *rectify)
+/* count pixels of target row y. The cubics are copies: registers. */
+static struct rows rectify_span(const struct tsr_rectify *rectify, unsigned y, struct rows rows,
+                                struct tsr_rectify_cubic across, struct tsr_rectify_cubic down, uint8_t *target,
+                                unsigned count)
 {
-    const struct tsr_rectify_table *table = rectify->table;
-    sampler->rectify = rectify;
-    sampler->middle_q8[0] = table->source_width / 2 * 256;
-    sampler->middle_q8[1] = table->source_height / 2 * 256;
-    sampler->last_q8[0] = (table->source_width - 1) * 256;
-    sampler->last_q8[1] = (table->source_height - 1) * 256;
+    const int32_t last_x_q8 = (rectify->source.width - 1) * 256;
+    const int32_t last_y_q8 = (rectify->source.height - 1) * 256;
+    for (unsigned i = 0; i < count; i++) {
+        int32_t y_q8 = tsr_rectify_clip_position(down.position, last_y_q8);
+        if (y_q8 >> POSITION_FRACTION_BITS != rows.upper_row) {
+            rows = select_rows(rectify, y, y_q8 >> POSITION_FRACTION_BITS);
+        }
+        target[i] = sample(&rows, tsr_rectify_clip_position(across.position, last_x_q8), y_q8 & POSITION_FRACTION);
+        tsr_rectify_step(&across);
+        tsr_rectify_step(&down);
+    }
+    return rows;
 }
 
-static void rectify_row(struct sampler *sampler, unsigned y)
+static void rectify_row(const struct tsr_rectify *rectify, unsigned y)
 {
-    const struct tsr_rectify *rectify = sampler->rectify;
     const unsigned width = rectify->table->width;
     const unsigned step = 1u << rectify->table->step_log2;
     uint8_t *target = rectify->target.pixels + (size_t)rectify->target.stride * y;
     if (rectify->kept != NULL) {
         memcpy(rectify->kept + (size_t)width * (y % rectify->kept_rows), target, width);
     }
-    sampler->y = y;
-    sampler->source_row = -1;
+    struct rows rows = {NO_ROW, NULL, NULL};
     struct tsr_rectify_row row;
     struct tsr_rectify_cubic cubic[2];
     tsr_rectify_row_start(&row, rectify->table, (enum tsr_rectify_side)rectify->side, y);
     for (unsigned first = 0; first < width; first += step) {
         const unsigned count = width - first < step ? width - first : step;
         tsr_rectify_row_next_span(&row, cubic);
-        for (unsigned i = 0; i < count; i++) {
-            int32_t x_q8 = tsr_rectify_clip_position(cubic[0].position, sampler->middle_q8[0], sampler->last_q8[0]);
-            int32_t y_q8 = tsr_rectify_clip_position(cubic[1].position, sampler->middle_q8[1], sampler->last_q8[1]);
-            target[first + i] = sample(sampler, x_q8, y_q8);
-            tsr_rectify_step(&cubic[0]);
-            tsr_rectify_step(&cubic[1]);
-        }
+        rows = rectify_span(rectify, y, rows, cubic[0], cubic[1], target + first, count);
     }
 }
 
@@ -150,10 +141,8 @@ enum tsr_status tsr_rectify_run(struct tsr_rectify *rectify, uint16_t rows)
     if (rectify == NULL || rows == 0) {
         return TSR_ERR_ARG;
     }
-    struct sampler sampler;
-    set_up_sampler(&sampler, rectify);
     for (; rows > 0 && rectify->rows_done < rectify->table->height; rows--, rectify->rows_done++) {
-        rectify_row(&sampler, rectify->rows_done);
+        rectify_row(rectify, rectify->rows_done);
     }
     return rectify->rows_done < rectify->table->height ? TSR_AGAIN : TSR_OK;
 }
@@ -166,9 +155,7 @@ uint16_t tsr_rectify_rows_done(const struct tsr_rectify *rectify)
 void tsr_rectify_position(const struct tsr_rectify_table *table, enum tsr_rectify_side side, uint16_t x, uint16_t y,
                           int32_t position_q8[2])
 {
-    const struct tsr_rectify rectify = {.table = table};
-    struct sampler sampler;
-    set_up_sampler(&sampler, &rectify);
+    const int32_t last_q8[2] = {(table->source_width - 1) * 256, (table->source_height - 1) * 256};
     struct tsr_rectify_row row;
     struct tsr_rectify_cubic cubic[2];
     tsr_rectify_row_start(&row, table, side, y);
@@ -179,7 +166,6 @@ void tsr_rectify_position(const struct tsr_rectify_table *table, enum tsr_rectif
         for (unsigned t = x & ((1u << table->step_log2) - 1u); t > 0; t--) {
             tsr_rectify_step(&cubic[axis]);
         }
-        position_q8[axis] =
-            tsr_rectify_clip_position(cubic[axis].position, sampler.middle_q8[axis], sampler.last_q8[axis]);
+        position_q8[axis] = tsr_rectify_clip_position(cubic[axis].position, last_q8[axis]);
     }
 }

@@ -31,6 +31,9 @@ void tsr_rectify_row_start(struct tsr_rectify_row *row, const struct tsr_rectify
     memset(row, 0, sizeof *row);
     row->step_log2 = table->step_log2;
     row->grid_row_len = TSR_RECTIFY_POINT_LEN * TSR_RECTIFY_POINTS(table->width, table->step_log2);
+    const uint32_t half = 1u << (TSR_RECTIFY_SUM_FRACTION_BITS - 9);
+    row->middle[0] = ((uint32_t)table->source_width / 2u << TSR_RECTIFY_SUM_FRACTION_BITS) + half;
+    row->middle[1] = ((uint32_t)table->source_height / 2u << TSR_RECTIFY_SUM_FRACTION_BITS) + half;
     row->point = table->grid[side] + row->grid_row_len * (y >> table->step_log2);
     /* Eq. (61): 6 S^3 B_k(t / S), of sum 6 S^3. */
     int32_t step = (int32_t)1 << table->step_log2;
@@ -88,7 +91,7 @@ void tsr_rectify_row_next_span(struct tsr_rectify_row *row, struct tsr_rectify_c
         int32_t third = round_scale(twist, 8 - 3 * log2);
         int32_t first = round_scale(slope, 7 - log2) + round_scale(bend, 7 - 2 * log2) +
                         round_divide(twist, 3 * ((int32_t)1 << (3 * log2 - 7)));
-        cubic[axis].position = (uint32_t)v[1] * 256u + (uint32_t)round_divide(bend * 128, 3);
+        cubic[axis].position = row->middle[axis] + (uint32_t)v[1] * 256u + (uint32_t)round_divide(bend * 128, 3);
         cubic[axis].first = (uint32_t)first;
         cubic[axis].second = (uint32_t)(round_scale(bend, 8 - 2 * log2) + third);
         cubic[axis].third = (uint32_t)third;

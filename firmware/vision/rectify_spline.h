@@ -17,12 +17,15 @@ struct tsr_rectify_row {
     const uint8_t *point; /* in the first of four grid rows: the next column */
     size_t grid_row_len;
     unsigned step_log2;
+    uint32_t middle[2]; /* of the source, px, Q10.21, and half of the last bit that is kept, to round */
     int32_t weight[4];
     int32_t coefficient[2][4]; /* of x and y; the last four columns */
 };
 
-/* A coordinate on S pixels: the position and its forward differences, Q10.21
- * modulo 2^32, so that sums that leave the range on the way do no harm. */
+/* A coordinate on S pixels: the position in the source, with the rounding added
+ * that clipping cuts off, and its forward differences: px, Q10.21 modulo 2^32,
+ * so that sums that leave the range on the way do no harm. Every position is
+ * inside -512 .. 832 px. */
 struct tsr_rectify_cubic {
     uint32_t position;
     uint32_t first;
@@ -54,16 +57,14 @@ static inline int32_t tsr_rectify_floor_shift(int32_t value, unsigned shift)
     return value >= 0 ? value >> shift : ~(~value >> shift);
 }
 
-/* A position in px, Q24.8, from a sum and the source's middle, clipped to
- * 0 .. last; docs/math.md, eq. (65). */
-static inline int32_t tsr_rectify_clip_position(uint32_t sum, int32_t middle_q8, int32_t last_q8)
+/* A position in px, Q24.8, clipped to 0 .. last; docs/math.md, eq. (65). */
+static inline int32_t tsr_rectify_clip_position(uint32_t sum, int32_t last_q8)
 {
-    const unsigned shift = TSR_RECTIFY_SUM_FRACTION_BITS - 8;
-    int32_t position = tsr_rectify_floor_shift((int32_t)(sum + (1u << (shift - 1u))), shift) + middle_q8;
-    if (position < 0) {
-        return 0;
+    int32_t position = tsr_rectify_floor_shift((int32_t)sum, TSR_RECTIFY_SUM_FRACTION_BITS - 8);
+    if ((uint32_t)position > (uint32_t)last_q8) {
+        position = position < 0 ? 0 : last_q8;
     }
-    return position < last_q8 ? position : last_q8;
+    return position;
 }
 
 #endif

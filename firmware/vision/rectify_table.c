@@ -45,15 +45,14 @@ static int32_t first_row_read(const struct tsr_rectify_table *table, enum tsr_re
     for (unsigned first = 0; first < table->width; first += step) {
         const unsigned count = table->width - first < step ? table->width - first : step;
         tsr_rectify_row_next_span(&row, cubic);
+        struct tsr_rectify_cubic down = cubic[1];
         for (unsigned i = 0; i < count; i++) {
-            const int32_t position = (int32_t)cubic[1].position;
+            const int32_t position = (int32_t)down.position;
             least = least < position ? least : position;
-            tsr_rectify_step(&cubic[1]);
+            tsr_rectify_step(&down);
         }
     }
-    return tsr_rectify_clip_position((uint32_t)least, table->source_height / 2 * 256,
-                                     (table->source_height - 1) * 256) >>
-           8;
+    return tsr_rectify_clip_position((uint32_t)least, (table->source_height - 1) * 256) >> 8;
 }
 
 uint16_t tsr_rectify_measure_rows_above(const struct tsr_rectify_table *table, enum tsr_rectify_side side)
