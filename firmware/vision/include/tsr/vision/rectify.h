@@ -87,8 +87,8 @@ struct tsr_rectify_table {
  *   bytes  [len] in, any alignment, flash or RAM; kept as long as the table
  *   len    exactly the table's length
  *
- * Takes about 12 instructions per byte and 50 per point and row of S: once, at
- * the start.
+ * Takes about 55 instructions per pixel of the view (Cortex-M4): once, at the
+ * start.
  *
  * Returns TSR_OK; TSR_ERR_ARG for a null pointer; TSR_ERR_FORMAT for another
  * magic, a CRC that does not hold, a nonzero reserved field, f or baseline of
@@ -161,7 +161,8 @@ enum tsr_status tsr_rectify_start_in_place(struct tsr_rectify *rectify, const st
                                            size_t kept_cap);
 
 /*
- * Continue for at most rows rows of the target. Positions outside the source
+ * Continue for at most rows rows of the target, each about 76 instructions per
+ * pixel (Cortex-M4, -O3, S = 16; 66 with S = 32). Positions outside the source
  * take the nearest pixel inside; bilinear weights are of 1/256 px, the value is
  * rounded to nearest, ties up. The result does not depend on how the rows are
  * divided among calls.
