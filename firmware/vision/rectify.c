@@ -16,11 +16,10 @@
 
 #define POSITION_FRACTION_BITS 8
 #define POSITION_FRACTION 255
-#define NO_ROW (-1)
 
 /* The source rows that the last pixel was read from. */
 struct rows {
-    int32_t upper_row; /* px, NO_ROW: none yet */
+    int32_t upper_row; /* px */
     const uint8_t *upper;
     const uint8_t *lower;
 };
@@ -125,7 +124,7 @@ static void rectify_row(const struct tsr_rectify *rectify, unsigned y)
     if (rectify->kept != NULL) {
         memcpy(rectify->kept + (size_t)width * (y % rectify->kept_rows), target, width);
     }
-    struct rows rows = {NO_ROW, NULL, NULL};
+    struct rows rows = select_rows(rectify, y, 0);
     struct tsr_rectify_row row;
     struct tsr_rectify_cubic cubic[2];
     tsr_rectify_row_start(&row, rectify->table, (enum tsr_rectify_side)rectify->side, y);

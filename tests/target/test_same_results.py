@@ -12,7 +12,7 @@ import board
 import pictures
 
 RESULTS = ["change_result", "change_state", "view_coded", "view_decoded", "reference_coded", "reference_decoded",
-           "match", "median", "quantise", "similarity", "map_coded", "map_decoded", "message", "frames"]
+           "match", "median", "quantise", "rectified", "similarity", "map_coded", "map_decoded", "message", "frames"]
 
 
 def results(folder):

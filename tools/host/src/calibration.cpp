@@ -178,14 +178,12 @@ StereoCalibration read_calibration(const std::vector<std::filesystem::path> &fil
     if (files.size() == 1) {
         return read_one(texts[0], files[0], units);
     }
-    std::vector<YamlFields> parsed;
-    for (std::size_t i = 0; i < files.size(); i++) {
-        parsed.emplace_back(texts[i], files[i].string());
+    const YamlFields first(texts[0], files[0].string());
+    const YamlFields second(texts[1], files[1].string());
+    if (first.has({"projection_matrix"}) && second.has({"projection_matrix"})) {
+        return read_ros(first, second, units);
     }
-    if (parsed[0].has({"projection_matrix"}) && parsed[1].has({"projection_matrix"})) {
-        return read_ros(parsed[0], parsed[1], units);
-    }
-    return read_opencv(parsed, units);
+    return read_opencv({first, second}, units);
 }
 
 } // namespace tsr

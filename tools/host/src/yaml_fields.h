@@ -32,7 +32,7 @@ class YamlFields
   public:
     /* Parses text; cv::FileStorage's own first line is understood. */
     YamlFields(std::string_view text, std::string file);
-    YamlFields(YAML::Node node, std::string file) : node_(std::move(node)), file_(std::move(file)) {}
+    YamlFields(const YAML::Node &node, std::string file) : node_(node), file_(std::move(file)) {}
 
     const std::string &file() const { return file_; }
     bool has(Names names) const;

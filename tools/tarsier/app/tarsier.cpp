@@ -45,26 +45,36 @@ void declare_rectify_table(CLI::App &command, tsr::RectifyTableOptions &options)
     command.add_flag("--json", options.json, "print JSON instead of lines for site.toml");
 }
 
+struct Commands {
+    tsr::StageOptions stage;
+    tsr::RectifyTableOptions rectify;
+    CLI::App *rectify_table = nullptr;
+};
+
+void declare(CLI::App &app, Commands &commands)
+{
+    app.require_subcommand(1);
+    declare_demo_scene(*app.add_subcommand("demo-scene", "write the demo's recorded frames and site"), commands.stage);
+    commands.rectify_table = app.add_subcommand("rectify-table", "make a node's rectification table");
+    declare_rectify_table(*commands.rectify_table, commands.rectify);
+}
+
+int run(const Commands &commands)
+{
+    if (commands.rectify_table->parsed()) {
+        tsr::write_rectify_table(commands.rectify);
+    } else {
+        tsr::write_stage(commands.stage);
+    }
+    return 0;
+}
+
 } // namespace
 
 int main(int argc, char **argv)
 {
-    tsr::StageOptions stage;
-    tsr::RectifyTableOptions rectify;
-    CLI::App *rectify_table = nullptr;
-    const auto declare = [&](CLI::App &app) {
-        app.require_subcommand(1);
-        declare_demo_scene(*app.add_subcommand("demo-scene", "write the demo's recorded frames and site"), stage);
-        rectify_table = app.add_subcommand("rectify-table", "make a node's rectification table from a calibration");
-        declare_rectify_table(*rectify_table, rectify);
-    };
-    const auto run = [&] {
-        if (rectify_table->parsed()) {
-            tsr::write_rectify_table(rectify);
-        } else {
-            tsr::write_stage(stage);
-        }
-        return 0;
-    };
-    return tsr::run_command_line({"tarsier", "Tools of Tarsier.", declare, run}, argc, argv);
+    Commands commands;
+    return tsr::run_command_line(
+        {"tarsier", "Tools of Tarsier.", [&](CLI::App &app) { declare(app, commands); }, [&] { return run(commands); }},
+        argc, argv);
 }

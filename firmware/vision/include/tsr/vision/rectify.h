@@ -87,7 +87,7 @@ struct tsr_rectify_table {
  *   bytes  [len] in, any alignment, flash or RAM; kept as long as the table
  *   len    exactly the table's length
  *
- * Takes about 55 instructions per pixel of the view (Cortex-M4): once, at the
+ * Takes about 57 instructions per pixel of the view (Cortex-M4): once, at the
  * start.
  *
  * Returns TSR_OK; TSR_ERR_ARG for a null pointer; TSR_ERR_FORMAT for another
@@ -161,8 +161,8 @@ enum tsr_status tsr_rectify_start_in_place(struct tsr_rectify *rectify, const st
                                            size_t kept_cap);
 
 /*
- * Continue for at most rows rows of the target, each about 76 instructions per
- * pixel (Cortex-M4, -O3, S = 16; 66 with S = 32). Positions outside the source
+ * Continue for at most rows rows of the target, each about 77 instructions per
+ * pixel (Cortex-M4, -O3, S = 16; 68 with S = 32). Positions outside the source
  * take the nearest pixel inside; bilinear weights are of 1/256 px, the value is
  * rounded to nearest, ties up. The result does not depend on how the rows are
  * divided among calls.
