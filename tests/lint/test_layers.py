@@ -22,7 +22,7 @@ RULES = {
     "hal/recorded": {"hal", "base", "host"},
     "hal/air": {"hal", "base"},
     "hal/mps2": {"hal", "base"},
-    "tools/host": {"host", "base", "codec", "wire"},
+    "tools/host": {"host", "base", "vision", "codec", "wire"},
     "tools/tarsier": {"stage", "stereo", "host", "base", "codec", "wire", "vision"},
     "emulator": {"emulator", "node", "hal", "host", "base", "wire"},
     "sink": {"sink", "host", "base", "codec", "wire"},

@@ -14,6 +14,7 @@ from run_site import BUILD, check, emulate, make_scene
 
 EMULATOR = BUILD / "bin/tarsier-emulator"
 SINK = BUILD / "bin/tarsier-sink"
+TARSIER = BUILD / "bin/tarsier"
 cases = 0
 
 
@@ -137,6 +138,63 @@ def geometry(folder, scene):
         refuse(name, [EMULATOR, file, "--out", folder / "out"], "two boards", out=folder / "out")
 
 
+RIG = """%YAML:1.0
+---
+image_width: 640
+image_height: 480
+K1: !!opencv-matrix
+   rows: 3
+   cols: 3
+   dt: d
+   data: [ 500., 0., 320., 0., 500., 240., 0., 0., 1. ]
+K2: !!opencv-matrix
+   rows: 3
+   cols: 3
+   dt: d
+   data: [ 500., 0., 320., 0., 500., 240., 0., 0., 1. ]
+R: !!opencv-matrix
+   rows: 3
+   cols: 3
+   dt: d
+   data: [ 1., 0., 0., 0., 1., 0., 0., 0., 1. ]
+T: [ -60., 0.5, 1. ]
+"""
+
+
+def calibrations(folder):
+    """tarsier rectify-table: calibrations that are damaged, or that no table can follow."""
+    table = folder / "rig.rect"
+
+    def command(name, text, *more):
+        file = folder / name
+        file.write_text(text)
+        return [TARSIER, "rectify-table", file, "-o", table, *more]
+
+    good = subprocess.run([str(word) for word in command("good.yml", RIG)], capture_output=True, text=True)
+    check(good.returncode == 0 and table.stat().st_size > 400, f"a good calibration: {good.stderr}")
+    check("baseline_mm = 60.0104" in good.stdout, f"a good calibration prints: {good.stdout}")
+    table.unlink()
+    edits = (("no left camera", "K1:", "Q1:", "K1", "missing"),
+             ("two rows of three", "rows: 3", "rows: 2", "good.yml:5", "K1", "9 values"),
+             ("no number", "[ -60.", "[ wide", "T", "finite"),
+             ("a mirror", "[ 1., 0., 0., 0., 1.", "[ 1., 0., 0., 0., -1.", "R", "rotation"),
+             ("epipole in view", "[ -60., 0.5, 1. ]", "[ -6., 0.5, 60. ]", "T", "epipole"),
+             ("one above the other", "[ -60., 0.5, 1. ]", "[ -6., 60., 1. ]", "T", "above"),
+             ("cameras exchanged", "[ -60., 0.5, 1. ]", "[ 60., 0.5, 1. ]", "T", "exchange"),
+             ("no YAML", "image_width: 640", "image_width: [640", "good.yml", "YAML"),
+             ("larger than a node", "image_width: 640", "image_width: 1280", "1280x480"))
+    for name, old, new, *mentions in edits:
+        refuse(f"calibration: {name}", command("good.yml", RIG.replace(old, new, 1)), *mentions)
+    refuse("calibration: one size only", command("good.yml", RIG, "--width", "320"), "--height")
+    refuse("calibration: no size", command("good.yml", RIG, "--source", "320"), "--source", "WIDTHxHEIGHT")
+    refuse("calibration: no step", command("good.yml", RIG, "--step", "7"), "--step")
+    refuse("calibration: no file", [TARSIER, "rectify-table", folder / "none.yml", "-o", table], "none.yml")
+    nowhere = command("good.yml", RIG)
+    nowhere[-1] = folder / "no/such/folder/rig.rect"
+    refuse("calibration: nowhere to write", nowhere, "no/such/folder")
+    check(not table.exists(), "a refused calibration left a table")
+
+
 def keys(folder, scene):
     emulate(scene / "site.toml", folder / "good")
     text = (folder / "good/keys.toml").read_text()
@@ -175,5 +233,6 @@ with tempfile.TemporaryDirectory() as name:
     command_lines(folder, scene)
     sites(folder, scene)
     geometry(folder, scene)
+    calibrations(folder)
     keys(folder, scene)
     print(f"{cases} cases refused")

@@ -128,7 +128,7 @@ def bad_input(scene, folder):
                            ("--texture", ("0", "128", "1x")), ("--lr", ("0", "128", "")),
                            ("--search-start", (129, -129, 70000)), ("--speckle-size", (1, 0, 4097, -5)),
                            ("--speckle-difference", (0, -1, 4096, "nan")), ("--diffusion-iterations", (0, 101, 257)),
-                           ("--diffusion-edge", (0, 16)), ("--mode", ("census", "", "SAD")),
+                           ("--diffusion-edge", (0, 16)), ("--mode", ("raw", "", "SAD")),
                            ("--refine", ("median4", "median3,,fill", "", "fill,none", ",".join(["fill"] * 9)))):
         for value in values:
             refuse_pair(f"{option} {value}", "--disparities", 32, f"{option}={value}", mentions=[option])

@@ -96,7 +96,8 @@ def build_host_workbench(folder):
     sources = [path for layer in ("base", "vision", "codec", "wire")
                for path in sorted((SOURCE / "firmware" / layer).glob("*.c"))]
     bench = SOURCE / "tests/target/workbench"
-    sources += [bench / name for name in ("workbench.c", "refinements.c", "codecs.c", "seals.c", "main_host.c")]
+    names = ("workbench.c", "refinements.c", "codecs.c", "rectify.c", "seals.c", "main_host.c")
+    sources += [bench / name for name in names]
     sources += [SOURCE / "hal/mps2/aes.c", MBEDTLS / "library/aes.c", MBEDTLS / "library/platform_util.c"]
     includes = [SOURCE / "firmware" / layer / "include" for layer in ("base", "vision", "codec", "wire")]
     includes += [SOURCE / "hal/mps2/include", SOURCE / "hal/mps2/config", MBEDTLS / "include", MBEDTLS / "library"]

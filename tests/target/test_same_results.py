@@ -13,7 +13,7 @@ import pictures
 
 RESULTS = ["change_result", "change_state", "view_coded", "view_decoded", "reference_coded", "reference_decoded",
            "match", "median", "median5", "speckle", "fill", "gaussian3", "gaussian5", "diffusion",
-           "quantise", "similarity", "map_coded", "map_decoded", "message", "frames"]
+           "quantise", "rectified", "similarity", "map_coded", "map_decoded", "message", "frames"]
 
 
 def results(folder):

@@ -192,6 +192,7 @@ void workbench_run(const struct workbench_case *bench)
     workbench_load("right.gray", right, pixels);
     run_change(bench, pixels);
     workbench_run_gray(bench, left, right);
+    workbench_run_rectify(bench, left);
     run_match(bench, pixels);
     run_compare(bench, pixels);
     size_t coded_len = workbench_run_map(bench, tsr_match_pair_map(pair), coded, sizeof coded);

@@ -20,6 +20,7 @@ using Command = std::function<int()>;
 Command declare_demo_scene(CLI::App &command);
 Command declare_compare(CLI::App &command);
 Command declare_match(CLI::App &command);
+Command declare_rectify_table(CLI::App &command);
 
 } // namespace tsr
 

@@ -4,6 +4,7 @@
  *   tarsier demo-scene --pictures DIR --out DIR          recorded folders and site of the demo
  *   tarsier match LEFT RIGHT --disparities N -o OUT      a disparity map as a node computes it
  *   tarsier compare MAP TRUTH                            how good a disparity map is
+ *   tarsier rectify-table CALIBRATION... -o TABLE        a node's rectification from a calibration
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -23,6 +24,7 @@ struct Entry {
 constexpr Entry kCommands[] = {
     {"demo-scene", "write the demo's recorded frames and site", tsr::declare_demo_scene},
     {"match", "match a rectified pair as a node does", tsr::declare_match},
+    {"rectify-table", "make a node's rectification table", tsr::declare_rectify_table},
     {"compare", "judge a disparity map by the truth", tsr::declare_compare},
 };
 
