@@ -174,8 +174,8 @@ struct tsr_match_scratch tsr_match_share_scratch(const struct tsr_match *match)
     scratch.offered = scratch.sums + disparities;
     scratch.columns = (uint8_t *)(scratch.offered + disparities) + TSR_MATCH_EDGE_ROOM;
     scratch.claims = (uint16_t *)(void *)(scratch.columns + width * disparities);
-    scratch.left_d = (uint8_t *)(scratch.claims + width);
-    scratch.texture = scratch.left_d + width;
+    scratch.choices = scratch.claims + width;
+    scratch.texture = (uint8_t *)(scratch.choices + width);
     return scratch;
 }
 

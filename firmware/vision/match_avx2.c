@@ -7,8 +7,13 @@
 
 #ifdef TSR_MATCH_HAS_X86
 
-#pragma GCC target("avx2,bmi,bmi2,popcnt")
 #include <immintrin.h>
+
+#ifdef __clang__
+#pragma clang attribute push(__attribute__((target("avx2,bmi,bmi2,popcnt"))), apply_to = function)
+#else
+#pragma GCC target("avx2,bmi,bmi2,popcnt")
+#endif
 
 #define VECTOR_LANES 32u
 typedef __m256i vec8;
@@ -140,4 +145,8 @@ static void match_row(const struct tsr_match *match, unsigned y, unsigned y_new,
 }
 
 const struct tsr_match_kernel tsr_match_kernel_avx2 = {"avx2", tsr_match_prefilter_row, tsr_match_add_row, match_row};
+
+#ifdef __clang__
+#pragma clang attribute pop
+#endif
 #endif

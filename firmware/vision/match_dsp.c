@@ -49,8 +49,7 @@ struct row {
     bool unique_off;
     uint8_t *texture; /* column sums, of all columns */
     uint16_t *claims;
-    uint8_t *left_d; /* of the first pixel that has candidates, as map_row */
-    uint16_t *map_row;
+    uint16_t *choices; /* of the first pixel that has candidates */
 };
 
 static inline uint16_t *halfwords_of(const struct row *row, unsigned group)
@@ -127,7 +126,7 @@ static inline bool is_unique(const struct row *row, unsigned group, unsigned lan
 }
 
 /* docs/math.md, eq. (16). */
-static inline unsigned interpolate_q4(const uint16_t *halfwords, unsigned lane, unsigned d, unsigned sum)
+static inline unsigned interpolate(const uint16_t *halfwords, unsigned lane, unsigned d, unsigned sum)
 {
     int below = halfwords[halfword_of_lane[lane]];
     int above = halfwords[halfword_of_lane[lane + 2u]];
@@ -135,7 +134,8 @@ static inline unsigned interpolate_q4(const uint16_t *halfwords, unsigned lane, 
     unsigned slope = (unsigned)(lean > 0 ? below : above) - sum;
     unsigned distance = (unsigned)(lean > 0 ? lean : -lean);
     unsigned offset_q4 = (16u * distance + slope) / (2u * slope);
-    return lean > 0 ? 16u * d + offset_q4 : 16u * d - offset_q4;
+    unsigned centre = TSR_MATCH_CHOICE(d, 0);
+    return lean > 0 ? centre + offset_q4 : centre - offset_q4;
 }
 
 /* The lowest lane of a group that has the sum; either half of the group's words may hold it. */
@@ -178,12 +178,11 @@ static inline __attribute__((always_inline)) void choose(const struct row *row, 
     if (claim < *claimed) {
         *claimed = (uint16_t)claim;
     }
-    row->left_d[x] = (uint8_t)d;
-    unsigned value = TSR_DISPARITY_INVALID;
+    unsigned choice = TSR_MATCH_CHOICE_NONE;
     if (textured && (row->unique_off || is_unique(row, group, lane, sum))) {
-        value = d - 1u < highest - 1u ? interpolate_q4(halfwords, lane, d, sum) : 16u * d;
+        choice = d - 1u < highest - 1u ? interpolate(halfwords, lane, d, sum) : TSR_MATCH_CHOICE(d, 0);
     }
-    row->map_row[x] = (uint16_t)value;
+    row->choices[x] = (uint16_t)choice;
 }
 
 /* Begin lane d at pixel d: its sum as if the column that enters now (d + radius)
@@ -224,7 +223,7 @@ static void move_texture_columns(const struct tsr_match *match, uint8_t *columns
 }
 
 /* Lays a row's working memory over the scratch: the least of the groups, the sums, and the edge of the new row. */
-static struct row begin_row(const struct tsr_match *match, unsigned y, uint8_t **edge)
+static struct row begin_row(const struct tsr_match *match, uint8_t **edge)
 {
     const struct tsr_match_config *config = &match->config;
     struct tsr_match_scratch scratch = tsr_match_share_scratch(match);
@@ -232,7 +231,6 @@ static struct row begin_row(const struct tsr_match *match, unsigned y, uint8_t *
     unsigned disparities = config->disparities;
     unsigned least_count = (disparities / GROUP_LANES + LEAST_WORDS - 1u) / LEAST_WORDS * LEAST_WORDS;
     uint32_t *least = (uint32_t *)(void *)match->scratch;
-    uint16_t *map_row = match->map + (size_t)y * config->width;
     struct row row = {.sums = least + least_count,
                       .columns = scratch.columns,
                       .columns_count = config->width - start,
@@ -241,15 +239,15 @@ static struct row begin_row(const struct tsr_match *match, unsigned y, uint8_t *
                       .unique_off = config->uniqueness_percent == TSR_MATCH_TEST_OFF,
                       .texture = scratch.texture,
                       .claims = scratch.claims,
-                      .left_d = scratch.left_d + start,
-                      .map_row = map_row + start};
+
+                      .choices = scratch.choices + start};
     memset(least, 0xff, sizeof *least * least_count);
     for (unsigned i = 0; i < disparities / 2u; i++) {
         row.sums[i] = NOT_STARTED * 0x10001u;
     }
     memset(scratch.claims, 0xff, sizeof *scratch.claims * config->width);
     for (unsigned x = 0; x < start; x++) {
-        map_row[x] = TSR_DISPARITY_INVALID;
+        scratch.choices[x] = TSR_MATCH_CHOICE_NONE;
     }
     *edge = (uint8_t *)(row.sums + disparities / 2u);
     return row;
@@ -333,7 +331,7 @@ static __attribute__((noinline)) int step_at_border(const struct tsr_match *matc
 static void match_row(const struct tsr_match *match, unsigned y, unsigned y_new, unsigned y_old)
 {
     uint8_t *edge;
-    const struct row row = begin_row(match, y, &edge);
+    const struct row row = begin_row(match, &edge);
     unsigned radius = match->config.window / 2u;
     unsigned start = (unsigned)match->config.search_start_px;
     unsigned highest = row.disparities - 1u;
@@ -358,7 +356,7 @@ static void match_row(const struct tsr_match *match, unsigned y, unsigned y_new,
     for (; enter < row.columns_count + radius; enter++) {
         texture = step_at_border(match, &row, &window, enter, texture);
     }
-    tsr_match_check_left_right(match, row.map_row - start);
+    tsr_match_write_row(match, y);
 }
 
 const struct tsr_match_kernel tsr_match_kernel_dsp = {"dsp", tsr_dsp_prefilter_row, tsr_dsp_add_row, match_row};

@@ -79,18 +79,17 @@ static bool is_unique(const struct tsr_match_config *config, const int16_t *sums
 
 /* docs/math.md, eq. (16): 16 d* plus the apex of two lines of equal and opposite
  * slope. The sum at d* - 1 exceeds the least one, so the slope is not 0. */
-static uint16_t interpolate_q4(const int16_t *sums, struct tsr_match_winner winner, struct offer offer)
+static int find_offset_q4(const int16_t *sums, struct tsr_match_winner winner, struct offer offer)
 {
-    unsigned centre_q4 = (unsigned)winner.d * 16u;
     if (winner.d <= offer.lowest || winner.d >= offer.highest) {
-        return (uint16_t)centre_q4;
+        return 0;
     }
     unsigned below = (unsigned)sums[winner.d - 1];
     unsigned above = (unsigned)sums[winner.d + 1];
     unsigned slope = (below > above ? below : above) - (unsigned)winner.sum;
     unsigned lean = below > above ? below - above : above - below;
     unsigned offset_q4 = (16u * lean + slope) / (2u * slope);
-    return (uint16_t)(below > above ? centre_q4 + offset_q4 : centre_q4 - offset_q4);
+    return below > above ? (int)offset_q4 : -(int)offset_q4;
 }
 
 static void claim_right(const struct tsr_match_scratch *scratch, int right_x, struct tsr_match_winner winner)
@@ -102,24 +101,23 @@ static void claim_right(const struct tsr_match_scratch *scratch, int right_x, st
 }
 
 /* docs/math.md, eq. (17). */
-void tsr_match_check_left_right(const struct tsr_match *match, uint16_t *map_row)
+void tsr_match_write_row(const struct tsr_match *match, unsigned y)
 {
     const struct tsr_match_config *config = &match->config;
     struct tsr_match_scratch scratch = tsr_match_share_scratch(match);
-    if (config->lr_tolerance_px == TSR_MATCH_TEST_OFF) {
-        return;
-    }
-    unsigned tolerance = config->lr_tolerance_px;
+    uint16_t *map_row = match->map + (size_t)y * config->width;
+    bool off = config->lr_tolerance_px == TSR_MATCH_TEST_OFF;
+    unsigned tolerance = off ? TSR_DISPARITY_COUNT_MAX : config->lr_tolerance_px;
     const uint16_t *claims = scratch.claims - config->search_start_px; /* of column x - d, d as in the map */
     for (unsigned x = 0; x < config->width; x++) {
-        if (map_row[x] == TSR_DISPARITY_INVALID) {
-            continue;
+        unsigned choice = scratch.choices[x];
+        unsigned value = TSR_DISPARITY_INVALID;
+        if (choice != TSR_MATCH_CHOICE_NONE) {
+            int d = (int)(choice >> 5);
+            unsigned apart = (unsigned)(TSR_MATCH_CLAIM_D(claims[(int)x - d]) - d) + tolerance;
+            value = apart <= 2u * tolerance ? 16u * (unsigned)d + (choice & 31u) - 8u : value;
         }
-        int d = scratch.left_d[x];
-        unsigned apart = (unsigned)(TSR_MATCH_CLAIM_D(claims[(int)x - d]) - d) + tolerance;
-        if (apart > 2u * tolerance) {
-            map_row[x] = TSR_DISPARITY_INVALID;
-        }
+        map_row[x] = (uint16_t)value;
     }
 }
 
@@ -128,18 +126,17 @@ static uint16_t match_pixel(const struct tsr_match_config *config, const struct 
 {
     struct offer offer = offer_at(config, x);
     if (offer.lowest > offer.highest) {
-        return TSR_DISPARITY_INVALID;
+        return TSR_MATCH_CHOICE_NONE;
     }
     const int16_t *sums = mask_sums(scratch, config->disparities, offer);
     struct tsr_match_winner winner = tsr_match_find_winner(sums, config->disparities);
-    scratch->left_d[x] = winner.d;
     claim_right(scratch, (int)x - config->search_start_px - winner.d, winner);
     bool textured = config->texture_min == TSR_MATCH_TEST_OFF ||
                     texture >= (unsigned)config->texture_min * config->window; /* eq. (13) */
     if (!textured || !is_unique(config, sums, winner)) {
-        return TSR_DISPARITY_INVALID;
+        return TSR_MATCH_CHOICE_NONE;
     }
-    return interpolate_q4(sums, winner, offer);
+    return TSR_MATCH_CHOICE(winner.d, find_offset_q4(sums, winner, offer));
 }
 
 void tsr_match_finish_row(const struct tsr_match *match, unsigned y)
@@ -149,7 +146,6 @@ void tsr_match_finish_row(const struct tsr_match *match, unsigned y)
     unsigned disparities = config->disparities;
     unsigned last = config->width - 1u;
     unsigned radius = config->window / 2u;
-    uint16_t *map_row = match->map + (size_t)y * config->width;
     unsigned texture = begin_sums(&scratch, disparities, radius);
     memset(scratch.claims, 0xff, sizeof(uint16_t) * config->width);
     for (unsigned x = 0; x <= last; x++) {
@@ -158,7 +154,7 @@ void tsr_match_finish_row(const struct tsr_match *match, unsigned y)
         move_sums(scratch.sums, scratch.columns + (size_t)enter * disparities,
                   scratch.columns + (size_t)leave * disparities, disparities);
         texture = texture + scratch.texture[enter] - scratch.texture[leave];
-        map_row[x] = match_pixel(config, &scratch, x, texture);
+        scratch.choices[x] = match_pixel(config, &scratch, x, texture);
     }
-    tsr_match_check_left_right(match, map_row);
+    tsr_match_write_row(match, y);
 }

@@ -107,19 +107,19 @@ INLINE vec16 index16(int first)
     return _mm_add_epi16(twos, _mm_set1_epi16((int16_t)first));
 }
 
-INLINE vec16 select(vec16 mask, vec16 a, vec16 b)
+INLINE vec16 choose_lanes(vec16 mask, vec16 a, vec16 b)
 {
     return _mm_or_si128(_mm_and_si128(mask, a), _mm_andnot_si128(mask, b));
 }
 
 INLINE vec16 select_above(int first, int x, vec16 a, vec16 b)
 {
-    return select(_mm_cmpgt_epi16(index16(first), _mm_set1_epi16((int16_t)x)), a, b);
+    return choose_lanes(_mm_cmpgt_epi16(index16(first), _mm_set1_epi16((int16_t)x)), a, b);
 }
 
 INLINE vec16 select_equal(int first, int x, vec16 a, vec16 b)
 {
-    return select(_mm_cmpeq_epi16(index16(first), _mm_set1_epi16((int16_t)x)), a, b);
+    return choose_lanes(_mm_cmpeq_epi16(index16(first), _mm_set1_epi16((int16_t)x)), a, b);
 }
 
 #include "match_vector_row.h"

@@ -5,7 +5,7 @@
  *   offered   int16_t [D]     the same with what the pixel cannot search masked
  *   columns   uint8_t [W][D]  column sums of A, see tsr_match_add_row()
  *   claims    uint16_t [W]    of every right pixel the least claim of a left pixel, TSR_MATCH_CLAIM()
- *   left_d    uint8_t [W]     d* of every left pixel of the row
+ *   choices   uint16_t [W]    what every left pixel of the row chose, TSR_MATCH_CHOICE()
  *   texture   uint8_t [W]     column sums of |P_left - cap|
  *
  * The prefilter runs before all this and uses the room of columns for the
@@ -26,7 +26,7 @@ struct tsr_match_scratch {
     int16_t *offered;
     uint8_t *columns;
     uint16_t *claims;
-    uint8_t *left_d;
+    uint16_t *choices;
     uint8_t *texture;
 };
 
@@ -37,6 +37,11 @@ struct tsr_match_scratch {
 #define TSR_MATCH_CLAIM(sum, d) ((uint16_t)((unsigned)(sum) >> 2 << 7 | (unsigned)(d)))
 #define TSR_MATCH_CLAIM_D(claim) ((claim)&127)
 #define TSR_MATCH_CLAIM_NONE UINT16_MAX
+
+/* d* with its offset of -8 .. 8 sixteenths, before eq. (17). A row of the map takes the place of frame rows that are
+ * still read while it is found out, so it is written at the end. */
+#define TSR_MATCH_CHOICE(d, offset_q4) ((uint16_t)((unsigned)(d) << 5 | (unsigned)((int)(offset_q4) + 8)))
+#define TSR_MATCH_CHOICE_NONE UINT16_MAX
 
 struct tsr_match_scratch tsr_match_share_scratch(const struct tsr_match *match);
 
@@ -61,8 +66,8 @@ void tsr_match_add_row(const struct tsr_match *match, unsigned y, unsigned times
 void tsr_match_move_columns(const struct tsr_match *match, unsigned y_new, unsigned y_old);
 void tsr_match_finish_row(const struct tsr_match *match, unsigned y);
 
-/* Take from a row of the map what fails eq. (17), by scratch.claims and .left_d. */
-void tsr_match_check_left_right(const struct tsr_match *match, uint16_t *map_row);
+/* Row y of the map: the choices that agree with the claims, eq. (17). */
+void tsr_match_write_row(const struct tsr_match *match, unsigned y);
 
 /* The least of the offered sums, the lowest d that has it, and how many are
  * within a limit. Sums lie in 0 .. TSR_MATCH_SUM_NONE. */

@@ -151,8 +151,9 @@ static inline __attribute__((always_inline)) void choose(const struct window *wi
         others = (~above[0] & ~own_low) | (~above[1] & all_high & ~own_high);
     }
     winners->sum[x] = (int16_t)sum;
-    winners->below[x] = lanes[(d + 1u) & 1u][(d + 1u) / 2u];
-    winners->above[x] = lanes[(d + 3u) & 1u][(d + 3u) / 2u];
+    /* The analyser does not see what vectors store. Lanes -1 and D are read and not used. */
+    winners->below[x] = lanes[(d + 1u) & 1u][(d + 1u) / 2u]; // NOLINT(clang-analyzer-core.uninitialized.Assign)
+    winners->above[x] = lanes[(d + 3u) & 1u][(d + 3u) / 2u]; // NOLINT(clang-analyzer-core.uninitialized.Assign)
     winners->d[x] = (uint8_t)d;
     winners->unique[x] = others == 0;
 }
@@ -245,8 +246,8 @@ static void judge_texture(const struct tsr_match *match, unsigned y_new, unsigne
 }
 
 /* Eq. (16). 16 |offset| is how often (2 k - 1) slope fits into 16 lean, k = 1 .. 8. */
-static void write_row(const struct winners *restrict winners, const uint8_t *restrict textured, unsigned count,
-                      const struct tsr_match_config *config, uint16_t *restrict map_row)
+static void write_choices(const struct winners *restrict winners, const uint8_t *restrict textured, unsigned count,
+                          const struct tsr_match_config *config, uint16_t *restrict choices)
 {
     int16_t highest = (int16_t)(config->disparities - 1);
     uint8_t unique_off = config->uniqueness_percent == TSR_MATCH_TEST_OFF;
@@ -263,9 +264,9 @@ static void write_row(const struct winners *restrict winners, const uint8_t *res
         }
         offset_q4 = lean > 0 ? offset_q4 : (int16_t)-offset_q4;
         bool inside = (d > 0) & (d < highest) & (d < (int16_t)x); /* both neighbours are candidates */
-        int16_t value = (int16_t)(16 * d + (inside ? offset_q4 : 0));
+        int16_t choice = (int16_t)TSR_MATCH_CHOICE(d, inside ? offset_q4 : 0);
         bool valid = (winners->unique[x] | unique_off) & textured[x];
-        map_row[x] = (uint16_t)(valid ? value : -1);
+        choices[x] = (uint16_t)(valid ? choice : -1);
     }
 }
 
@@ -287,13 +288,11 @@ static void finish_row(const struct tsr_match *match, unsigned y, unsigned y_new
     unsigned count = config->width - start;
     uint8_t textured[TSR_IMAGE_WIDTH_MAX];
     judge_texture(match, y_new, y_old, textured);
-    uint16_t *map_row = match->map + (size_t)y * config->width;
     for (unsigned x = 0; x < start; x++) {
-        map_row[x] = TSR_DISPARITY_INVALID;
+        scratch.choices[x] = TSR_MATCH_CHOICE_NONE;
     }
-    write_row(winners, textured + start, count, config, map_row + start);
+    write_choices(winners, textured + start, count, config, scratch.choices + start);
     memset(scratch.claims, 0xff, sizeof *scratch.claims * config->width);
     claim_right(winners, count, scratch.claims);
-    memcpy(scratch.left_d + start, winners->d, count);
-    tsr_match_check_left_right(match, map_row);
+    tsr_match_write_row(match, y);
 }

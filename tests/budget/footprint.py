@@ -19,6 +19,10 @@ CLOCK = "tsr_mps2_clock_now_us"
 INDIRECT = {
     "mps2/loopback.c:transmit": (CLOCK,),
     "mps2/camera.c:capture": (CLOCK,),
+    "vision/match.c": ("match_dsp_rows.c:tsr_dsp_prefilter_row", "match_dsp_rows.c:tsr_dsp_add_row",
+                       "match_dsp.c:match_row", "match_prefilter.c:tsr_match_prefilter_row",
+                       "match_columns.c:tsr_match_add_row", "match_kernels.c:move_and_finish"),
+    "vision/match_kernels.c": (),
     "wire/ccm.c": ("aes.c:expand", "aes.c:encrypt"),
     "net/mac.c": ("loopback.c:configure", "loopback.c:set_receiving", "loopback.c:transmit",
                   "mps2_an386.c:fill_random"),

@@ -89,9 +89,9 @@ struct tsr_match {
 enum tsr_status tsr_match_check(const struct tsr_match_config *config, const char **field);
 
 /* Scratch bytes of the SAD modes, from resolved values, and of any from a configuration (0 if it does
- * not check): column sums, four rows of bytes, and room to work on one pixel. */
+ * not check): column sums, five rows of bytes, and room to work on one pixel. */
 #define TSR_MATCH_SCRATCH_LEN(width, disparities)                                                                      \
-    ((size_t)(width) * ((size_t)(disparities) + 4u) + 4u * (size_t)(disparities) + 8u)
+    ((size_t)(width) * ((size_t)(disparities) + 5u) + 4u * (size_t)(disparities) + 8u)
 size_t tsr_match_scratch_len(const struct tsr_match_config *config);
 
 /*
