@@ -252,7 +252,7 @@ static void write_choices(const struct winners *restrict winners, const uint8_t 
     int16_t highest = (int16_t)(config->disparities - 1);
     uint8_t unique_off = config->uniqueness_percent == TSR_MATCH_TEST_OFF;
     for (unsigned x = 0; x < count; x++) {
-        int16_t d = winners->d[x];
+        int16_t d = winners->d[x]; // NOLINT(clang-analyzer-core.uninitialized.Assign): every pixel has a winner
         int16_t below = winners->below[x];
         int16_t above = winners->above[x];
         int16_t slope = (int16_t)((below > above ? below : above) - winners->sum[x]);
