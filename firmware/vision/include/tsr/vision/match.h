@@ -154,7 +154,8 @@ enum tsr_status tsr_match_start(struct tsr_match *match, const struct tsr_match_
  *   window/2    warm-up rows, each about 15 per pixel and disparity
  *   height      matched rows, each about 48 per pixel and disparity
  *
- * (Cortex-M4, -O3, D = 32; larger D cost less per disparity).
+ * (portable kernel, Cortex-M4, -O3, D = 32; larger D cost less per disparity, the
+ * DSP kernel about a quarter: docs/performance.md).
  *
  * The result does not depend on how the rows are divided among calls. Matched
  * row y of the map is final as soon as it is done.
