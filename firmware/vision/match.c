@@ -22,6 +22,7 @@
 #define DISPARITIES_DEFAULT 32
 #define WINDOW_DEFAULT 9
 #define WINDOW_MIN 5
+#define CAP_MAX 7         /* prefiltered pixels 0 .. 2 cap fit 4 bits: a vector kernel looks differences up */
 #define CAP_ROOM 63       /* cap * window <= 63: column sums of 2 cap, and their differences, fit 8 bits with a sign */
 #define SAD8_CAP_ROOM 127 /* cap * window^2 <= 127: window sums fit 8 bits */
 #define UNIQUENESS_DEFAULT 15
@@ -41,7 +42,8 @@ static uint8_t cap_max(const struct tsr_match_config *config)
 {
     int by_columns = CAP_ROOM / config->window;
     int by_window = SAD8_CAP_ROOM / (config->window * config->window);
-    return (uint8_t)(config->mode == TSR_MATCH_SAD8 && by_window < by_columns ? by_window : by_columns);
+    int cap = by_columns < CAP_MAX ? by_columns : CAP_MAX;
+    return (uint8_t)(config->mode == TSR_MATCH_SAD8 && by_window < cap ? by_window : cap);
 }
 
 static bool is_census(const struct tsr_match_config *config)

@@ -2,20 +2,16 @@
  * Column sums of the matcher: A(x,y,d) over the window's rows, for every column
  * and disparity, moved down row by row.
  *
- * A(.,.,d) exists for the columns x_first(d) = max(0, d + s) to
- * x_last(d) = min(W - 1, W - 1 + d + s). Outside them the column is the nearest
- * one inside: left of x_first it pairs P_left(d + s) with P_right(0), right of
- * x_last P_left(W - 1 + d + s) with P_right(W - 1). So the lanes d of a column
- * fall into three runs, and in each of them one value of one frame meets
- * consecutive values of the other:
+ * The right row is mirrored, so consecutive lanes d of column x meet consecutive
+ * pixels, from mirrored column W - 1 - x + s on. Where those lie outside the
+ * picture the nearest one inside stands for them: eq. (11).
  *
  *     d   0 ........ middle .................. upper ........... D
- *         right border     the right frame has     left border
- *                          x - s - d
+ *         right of the     the right picture    left of the
+ *         right picture    has x - s - d        right picture
  *
  * SPDX-License-Identifier: Apache-2.0
  */
-#include <stdbool.h>
 #include <string.h>
 
 #include "match_stages.h"
@@ -26,14 +22,11 @@ struct rows {
     const uint8_t *right;
 };
 
-/* Lanes from .. from + count - 1 of a column: value one of one row against the
- * values from many on of the other. */
-struct run {
-    unsigned from;
-    unsigned count;
-    int one;
-    int many;
-    bool one_is_left;
+/* Where the lanes of a column change their run, and what the first of middle meets. */
+struct runs {
+    unsigned middle;
+    unsigned upper;
+    int first;
 };
 
 static struct rows rows_at(const struct tsr_match *match, unsigned y)
@@ -49,22 +42,27 @@ static unsigned clip_lane(int d, unsigned disparities)
     return positive < disparities ? positive : disparities;
 }
 
-/* The three runs of column x. Those without lanes come with a count of 0. */
-static void find_runs(const struct tsr_match_config *config, unsigned x, struct run runs[3])
+static struct runs find_runs(const struct tsr_match_config *config, unsigned x)
 {
-    int start = config->search_start_px;
     int last = config->width - 1;
-    int lane_of_first = (int)x - start; /* the d whose right pixel is 0 */
-    unsigned middle = clip_lane(lane_of_first - last, config->disparities);
-    unsigned upper = clip_lane(lane_of_first + 1, config->disparities);
-    runs[0] = (struct run){0, middle, 0, last + start, false};
-    runs[1] = (struct run){middle, upper - middle, (int)x, last - lane_of_first + (int)middle, true};
-    runs[2] = (struct run){upper, config->disparities - upper, last, start + (int)upper, false};
+    int lane_of_first = (int)x - config->search_start_px; /* the d whose right pixel is 0 */
+    struct runs runs;
+    runs.middle = clip_lane(lane_of_first - last, config->disparities);
+    runs.upper = clip_lane(lane_of_first + 1, config->disparities);
+    runs.first = last - lane_of_first + (int)runs.middle;
+    return runs;
 }
 
 static inline uint8_t difference(uint8_t a, uint8_t b)
 {
     return (uint8_t)(a > b ? a - b : b - a);
+}
+
+static void add_same(uint8_t *column, unsigned count, uint8_t term)
+{
+    for (unsigned d = 0; d < count; d++) {
+        column[d] = (uint8_t)(column[d] + term);
+    }
 }
 
 static void add_lanes(uint8_t *restrict column, unsigned count, unsigned times, uint8_t one,
@@ -75,8 +73,8 @@ static void add_lanes(uint8_t *restrict column, unsigned count, unsigned times, 
     }
 }
 
-/* Column sums of A stay within 255 (window * 2 cap); what lies between adding
- * and taking away may wrap around. */
+/* Column sums of A stay within 127; what lies between adding and taking away may
+ * wrap around. */
 static void move_lanes(uint8_t *restrict column, unsigned count, uint8_t one_new, const uint8_t *restrict many_new,
                        uint8_t one_old, const uint8_t *restrict many_old)
 {
@@ -98,17 +96,17 @@ void tsr_match_add_row(const struct tsr_match *match, unsigned y, unsigned times
     const struct tsr_match_config *config = &match->config;
     struct tsr_match_scratch scratch = tsr_match_share_scratch(match);
     struct rows rows = rows_at(match, y);
+    unsigned last = config->width - 1u;
     for (unsigned x = 0; x < config->width; x++) {
         uint8_t *column = scratch.columns + (size_t)x * config->disparities;
-        struct run runs[3];
-        find_runs(config, x, runs);
-        for (unsigned i = 0; i < 3; i++) {
-            if (runs[i].count > 0) {
-                const uint8_t *one = runs[i].one_is_left ? rows.left : rows.right;
-                const uint8_t *many = runs[i].one_is_left ? rows.right : rows.left;
-                add_lanes(column + runs[i].from, runs[i].count, times, one[runs[i].one], many + runs[i].many);
-            }
+        struct runs runs = find_runs(config, x);
+        uint8_t left = rows.left[x];
+        add_same(column, runs.middle, (uint8_t)(times * difference(left, rows.right[0])));
+        if (runs.upper > runs.middle) {
+            add_lanes(column + runs.middle, runs.upper - runs.middle, times, left, rows.right + runs.first);
         }
+        add_same(column + runs.upper, config->disparities - runs.upper,
+                 (uint8_t)(times * difference(left, rows.right[last])));
     }
     add_lanes(scratch.texture, config->width, times, config->prefilter_cap, rows.left);
 }
@@ -119,24 +117,18 @@ void tsr_match_move_columns(const struct tsr_match *match, unsigned y_new, unsig
     struct tsr_match_scratch scratch = tsr_match_share_scratch(match);
     struct rows new = rows_at(match, y_new);
     struct rows old = rows_at(match, y_old);
+    unsigned last = config->width - 1u;
     for (unsigned x = 0; x < config->width; x++) {
         uint8_t *column = scratch.columns + (size_t)x * config->disparities;
-        struct run runs[3];
-        find_runs(config, x, runs);
-        for (unsigned i = 0; i < 3; i++) {
-            int one = runs[i].one;
-            int many = runs[i].many;
-            if (runs[i].count == 0) {
-                continue;
-            }
-            if (runs[i].one_is_left) {
-                move_lanes(column + runs[i].from, runs[i].count, new.left[one], new.right + many, old.left[one],
-                           old.right + many);
-            } else {
-                move_lanes(column + runs[i].from, runs[i].count, new.right[one], new.left + many, old.right[one],
-                           old.left + many);
-            }
+        struct runs runs = find_runs(config, x);
+        add_same(column, runs.middle,
+                 (uint8_t)(difference(new.left[x], new.right[0]) - difference(old.left[x], old.right[0])));
+        if (runs.upper > runs.middle) {
+            move_lanes(column + runs.middle, runs.upper - runs.middle, new.left[x], new.right + runs.first, old.left[x],
+                       old.right + runs.first);
         }
+        add_same(column + runs.upper, config->disparities - runs.upper,
+                 (uint8_t)(difference(new.left[x], new.right[last]) - difference(old.left[x], old.right[last])));
     }
     move_lanes(scratch.texture, config->width, config->prefilter_cap, new.left, config->prefilter_cap, old.left);
 }

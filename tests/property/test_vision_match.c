@@ -109,7 +109,7 @@ static void draw_example(void)
     config->disparities = (uint16_t)(16 + 8 * random_below(5));
     config->width = (uint16_t)(config->disparities + random_below(WIDTH_MAX - config->disparities + 1u));
     config->height = (uint16_t)(config->window + random_below(HEIGHT_MAX - config->window + 1u));
-    config->prefilter_cap = (uint8_t)random_below(63u / config->window + 1u);
+    config->prefilter_cap = (uint8_t)random_below((config->window < 9 ? 7u : 63u / config->window) + 1u);
     config->uniqueness_percent = random_setting(100);
     config->texture_min = random_setting(20);
     config->lr_tolerance_px = random_setting(5);

@@ -30,26 +30,26 @@ def prefilter(picture, cap):
     return np.clip(np.floor_divide(gradient + 2, 4), -cap, cap) + cap
 
 
-def window_sums(values, radius, first, last):
-    """The sum over the window around every pixel, columns clipped to first .. last, rows to the picture."""
+def window_sums(values, radius):
+    """The sum over the window around every pixel, columns and rows clipped to the picture."""
     height, width = values.shape
     rows = sum(values[inside(np.arange(height) + j, 0, height - 1)] for j in range(-radius, radius + 1))
-    return sum(rows[:, inside(np.arange(width) + i, first, last)] for i in range(-radius, radius + 1))
+    return sum(rows[:, inside(np.arange(width) + i, 0, width - 1)] for i in range(-radius, radius + 1))
 
 
 def volume(left, right, disparities, window, start):
-    """Eqs. (11), (12): S[y, x, d], -1 where A does not exist."""
+    """Eqs. (11), (12): S[y, x, d], for every d; candidates() says which of them a pixel may choose."""
     height, width = left.shape
-    sums = np.full((height, width, disparities), -1, np.int64)
+    sums = np.empty((height, width, disparities), np.int64)
     for d in range(disparities):
-        first, last = max(0, d + start), min(width - 1, width - 1 + d + start)
-        if first > last:
-            continue
-        x = np.arange(first, last + 1)
-        a = np.zeros((height, width), np.int64)
-        a[:, x] = np.abs(left[:, x] - right[:, x - start - d])
-        sums[:, x, d] = window_sums(a, window // 2, first, last)[:, x]
+        met = right[:, inside(np.arange(width) - start - d, 0, width - 1)]
+        sums[:, :, d] = window_sums(np.abs(left - met), window // 2)
     return sums
+
+
+def candidates(x, width, disparities, start):
+    """D(x): the d whose right pixel lies in the picture."""
+    return [d for d in range(disparities) if 0 <= x - start - d < width]
 
 
 @functools.lru_cache(maxsize=None)
@@ -65,30 +65,30 @@ def match(left, right, disparities, window, cap, uniqueness, texture_min, tolera
     height, width = left.shape
     left, right = prefilter(left, cap), prefilter(right, cap)
     sums = volume(left, right, disparities, window, start)
-    texture = window_sums(np.abs(left - cap), window // 2, 0, width - 1)
+    texture = window_sums(np.abs(left - cap), window // 2)
     result = np.full((height, width), INVALID, np.uint16)
     for y in range(height):
         winners, claims = {}, {}
         for x in range(width):
-            candidates = [d for d in range(disparities) if sums[y, x, d] >= 0]
-            if not candidates:
+            offered = candidates(x, width, disparities, start)
+            if not offered:
                 continue
             costs = sums[y, x]
-            best = min(candidates, key=lambda d: (costs[d], d))
-            winners[x] = (best, candidates)
+            best = min(offered, key=lambda d: (costs[d], d))
+            winners[x] = (best, offered)
             claims.setdefault(x - start - best, []).append((int(costs[best]) // 4, best))
-        for x, (best, candidates) in winners.items():
+        for x, (best, offered) in winners.items():
             costs = sums[y, x].tolist()
             least = costs[best]
             if texture_min != TEST_OFF and texture[y, x] < texture_min * window:
                 continue
             if uniqueness != TEST_OFF and any(100 * costs[d] <= (100 + uniqueness) * least
-                                              for d in candidates if abs(d - best) > 1):
+                                              for d in offered if abs(d - best) > 1):
                 continue
             if tolerance != TEST_OFF and abs(min(claims[x - start - best])[1] - best) > tolerance:
                 continue
             value = 16 * best
-            if best - 1 in candidates and best + 1 in candidates:
+            if best - 1 in offered and best + 1 in offered:
                 value += offset_q4(costs[best - 1], least, costs[best + 1])
             result[y, x] = value
     return result

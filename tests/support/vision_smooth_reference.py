@@ -31,8 +31,7 @@ def distances(left, right, disparities, start):
 
 def box(costs, radius):
     """The sum over the window around every pixel, clipped to the picture."""
-    last = costs.shape[1] - 1
-    return np.stack([window_sums(costs[:, :, d], radius, 0, last) for d in range(costs.shape[2])], axis=-1)
+    return np.stack([window_sums(costs[:, :, d], radius) for d in range(costs.shape[2])], axis=-1)
 
 
 def path_costs(costs, gray, step):

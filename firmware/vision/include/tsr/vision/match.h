@@ -2,7 +2,7 @@
  * Stereo matching of a rectified pair by the sum of absolute differences.
  *
  *   P(x,y)   = clip(round(x-Sobel / 4)) + cap, 0 .. 2 cap     docs/math.md, eq. (10)
- *   A(x,y,d) = |P_left(x,y) - P_right(x - s - d, y)|          eq. (11)
+ *   A(x,y,d) = |P_left(x,y) - P_right(clip(x - s - d), y)|    eq. (11)
  *   S(x,y,d) = sum of A over window x window                  eq. (12)
  *   d*       = the lowest d with the least S(x,y,d)           eq. (14)
  *
@@ -11,10 +11,8 @@
  * search_start_px; d + s is the disparity between the views, the map holds d.
  *
  * The whole image is matched. Pixel (x,y) searches the d in 0 .. D-1 whose right
- * pixel x - s - d lies in the right image; a pixel without any is invalid. The
- * window is completed by replication: a row outside the image is the nearest row
- * inside, and for each d a column where A(.,.,d) does not exist is the nearest
- * column where it does (docs/math.md, eq. (12)).
+ * pixel x - s - d lies in the right image; a pixel without any is invalid. A row
+ * or column outside an image is the nearest inside.
  *
  * The portable C is the definition: every kernel for an instruction set gives the
  * same bits.
@@ -55,8 +53,8 @@ struct tsr_match_config {
     uint16_t disparities;       /* D, searched disparities, 16 .. 128, a multiple of 8; default 32 */
     uint8_t window;             /* px, odd, 5 .. 15; default 9; smooth does not use it (it becomes 7) */
     uint8_t mode;               /* enum tsr_match_mode; default TSR_MATCH_SAD */
-    uint8_t prefilter_cap;      /* 1 .. 63 / window (2 cap window <= 127), with SAD8 also <= 127 / window^2;
-                                   default the largest */
+    uint8_t prefilter_cap;      /* 1 .. 7, <= 63 / window (2 cap window <= 127), with SAD8 <= 127 / window^2; default
+                                   the largest */
     uint8_t uniqueness_percent; /* 1 .. 100, or off; default 15, in smooth 25 */
     uint8_t texture_min;        /* least sum of |P_left - cap| over the window, in units of window px, 1 .. 127, or
                                    off; default 1 */
