@@ -16,8 +16,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "match_smooth.h"
-#include "match_stages.h"
+#include "match_census.h"
 
 #define DISPARITIES_DEFAULT 32
 #define WINDOW_DEFAULT 9
@@ -132,10 +131,8 @@ size_t tsr_match_scratch_len(const struct tsr_match_config *config)
         return 0;
     }
     struct tsr_match_config resolved = resolve(config);
-    if (is_census(&resolved)) {
-        return tsr_match_smooth_scratch_len(&resolved);
-    }
-    return TSR_MATCH_SCRATCH_LEN(resolved.width, resolved.disparities);
+    size_t more = is_census(&resolved) ? tsr_match_census_scratch_len(&resolved) : 0;
+    return TSR_MATCH_SCRATCH_LEN(resolved.width, resolved.disparities) + more;
 }
 
 size_t tsr_match_pair_len(const struct tsr_match_config *config)
@@ -167,6 +164,12 @@ uint16_t *tsr_match_pair_map(uint8_t *pair)
     return (uint16_t *)(void *)pair;
 }
 
+/* Claims take 16 bits: window sums up to 1890 >> 2, 3600 >> 3, 204. */
+unsigned tsr_match_claim_shift(uint8_t mode)
+{
+    return mode == TSR_MATCH_SMOOTH ? 0u : mode == TSR_MATCH_CENSUS ? 3u : 2u;
+}
+
 struct tsr_match_scratch tsr_match_share_scratch(const struct tsr_match *match)
 {
     size_t width = match->config.width;
@@ -175,7 +178,8 @@ struct tsr_match_scratch tsr_match_share_scratch(const struct tsr_match *match)
     scratch.sums = (int16_t *)(void *)match->scratch;
     scratch.offered = scratch.sums + disparities;
     scratch.columns = (uint8_t *)(scratch.offered + disparities) + TSR_MATCH_EDGE_ROOM;
-    scratch.claims = (uint16_t *)(void *)(scratch.columns + width * disparities);
+    size_t rows = match->config.mode == TSR_MATCH_SMOOTH ? TSR_MATCH_SMOOTH_ROWS : 1u;
+    scratch.claims = (uint16_t *)(void *)(scratch.columns + rows * width * disparities);
     scratch.choices = scratch.claims + width;
     scratch.texture = (uint8_t *)(scratch.choices + width);
     return scratch;
@@ -256,7 +260,7 @@ enum tsr_status tsr_match_run(struct tsr_match *match, uint16_t rows)
     for (; rows > 0 && match->rows_done < total; rows--, match->rows_done++) {
         unsigned row = match->rows_done;
         if (is_census(&match->config)) {
-            tsr_match_smooth_step(match, row);
+            tsr_match_census_step(match, row);
         } else if (row < height) {
             match->kernel->prefilter_row(match, row);
         } else if (row < height + radius) {
@@ -276,7 +280,7 @@ uint16_t tsr_match_rows_done(const struct tsr_match *match)
 uint16_t tsr_match_rows_total(const struct tsr_match *match)
 {
     if (is_census(&match->config)) {
-        return (uint16_t)tsr_match_smooth_rows_total(&match->config);
+        return (uint16_t)tsr_match_census_rows_total(&match->config);
     }
     return (uint16_t)(2u * match->config.height + match->config.window / 2u);
 }

@@ -144,7 +144,13 @@ static void match_row(const struct tsr_match *match, unsigned y, unsigned y_new,
     finish_row(match, y, y_new, y_old, &winners);
 }
 
-const struct tsr_match_kernel tsr_match_kernel_avx2 = {"avx2", tsr_match_prefilter_row, tsr_match_add_row, match_row};
+const struct tsr_match_kernel tsr_match_kernel_avx2 = {
+    .name = "avx2",
+    .prefilter_row = tsr_match_prefilter_row,
+    .add_row = tsr_match_add_row,
+    .match_row = match_row,
+    TSR_MATCH_PORTABLE_CENSUS,
+};
 
 #ifdef __clang__
 #pragma clang attribute pop

@@ -1,5 +1,5 @@
 /*
- * Census descriptors and their Hamming distances, summed over the rows of a box.
+ * Census descriptors and their Hamming distances.
  *
  * R. Zabih, J. Woodfill: Non-parametric local transforms for computing visual
  * correspondence, ECCV 1994. The sixteen neighbours, one plane of eight bits each:
@@ -12,9 +12,7 @@
  *
  * SPDX-License-Identifier: Apache-2.0
  */
-#include <string.h>
-
-#include "match_smooth.h"
+#include "match_census.h"
 
 #define REACH 2 /* rows and columns around the pixel */
 #define ROWS (2 * REACH + 1)
@@ -28,23 +26,6 @@ static const struct neighbour neighbours[TSR_MATCH_CENSUS_PLANES][8] = {
     {{0, -2}, {0, -1}, {-2, 0}, {-1, 0}, {1, 0}, {2, 0}, {0, 1}, {0, 2}},
     {{-1, -2}, {1, -2}, {-2, -1}, {2, -1}, {-2, 1}, {2, 1}, {-1, 2}, {1, 2}},
 };
-
-/* The planes of one ring row. */
-struct planes {
-    uint8_t *left[TSR_MATCH_CENSUS_PLANES];
-    uint8_t *right[TSR_MATCH_CENSUS_PLANES];
-};
-
-static struct planes planes_at(const struct tsr_match *match, unsigned y)
-{
-    size_t width = match->config.width;
-    size_t right_len = width + match->config.disparities;
-    size_t row_len = TSR_MATCH_CENSUS_PLANES * (width + right_len);
-    unsigned slot = y % (2u * tsr_match_smooth_radius(&match->config) + 2u);
-    uint8_t *row = tsr_match_share_smooth(match).ring + row_len * slot;
-    struct planes planes = {{row, row + width}, {row + 2u * width, row + 2u * width + right_len}};
-    return planes;
-}
 
 static unsigned clip(int value, unsigned last)
 {
@@ -93,7 +74,7 @@ static void describe_right(const struct tsr_match *match, const uint8_t *const r
 void tsr_match_describe_row(const struct tsr_match *match, unsigned y)
 {
     unsigned width = match->config.width;
-    struct planes planes = planes_at(match, y);
+    struct tsr_match_planes planes = tsr_match_planes_at(match, y);
     const uint8_t *left[ROWS];
     const uint8_t *right[ROWS];
     find_rows(&match->left, y, left);
@@ -115,16 +96,27 @@ static unsigned count_bits(unsigned a, unsigned b)
     return (fours & 0x0fu) + (fours >> 4);
 }
 
-/* column[d] += times C(x,y,d), modulo 256: subtracting is adding 255 times. */
-static void add_column(uint8_t *restrict column, const struct planes *planes, unsigned x, unsigned from,
-                       unsigned disparities, unsigned times)
+/* C(x,y,d) of a pixel's lanes. */
+static void find_costs(uint8_t *restrict costs, const struct tsr_match_planes *planes, unsigned x, unsigned from,
+                       unsigned disparities)
 {
     unsigned left0 = planes->left[0][x];
     unsigned left1 = planes->left[1][x];
     const uint8_t *right0 = planes->right[0] + from;
     const uint8_t *right1 = planes->right[1] + from;
     for (unsigned d = 0; d < disparities; d++) {
-        column[d] = (uint8_t)(column[d] + times * count_bits(left0 ^ right0[d], left1 ^ right1[d]));
+        costs[d] = (uint8_t)count_bits(left0 ^ right0[d], left1 ^ right1[d]);
+    }
+}
+
+void tsr_match_cost_row(const struct tsr_match *match, unsigned y)
+{
+    unsigned width = match->config.width;
+    unsigned disparities = match->config.disparities;
+    uint8_t *costs = tsr_match_costs_at(match, y);
+    struct tsr_match_planes planes = tsr_match_planes_at(match, y);
+    for (unsigned x = 0; x < width; x++) {
+        find_costs(costs + (size_t)x * disparities, &planes, x, width - 1u - x, disparities);
     }
 }
 
@@ -132,14 +124,22 @@ void tsr_match_add_census(const struct tsr_match *match, unsigned y, unsigned ti
 {
     unsigned width = match->config.width;
     unsigned disparities = match->config.disparities;
-    uint8_t *columns = tsr_match_share_smooth(match).columns;
-    struct planes planes = planes_at(match, y);
+    uint8_t *columns = tsr_match_share_scratch(match).columns;
+    struct tsr_match_planes planes = tsr_match_planes_at(match, y);
     for (unsigned x = 0; x < width; x++) {
-        add_column(columns + (size_t)x * disparities, &planes, x, width - 1u - x, disparities, times);
+        uint8_t costs[TSR_DISPARITY_COUNT_MAX];
+        uint8_t *restrict column = columns + (size_t)x * disparities;
+        find_costs(costs, &planes, x, width - 1u - x, disparities);
+        for (unsigned d = 0; d < disparities; d++) {
+            column[d] = (uint8_t)(column[d] + times * costs[d]);
+        }
     }
 }
 
-void tsr_match_take_census(const struct tsr_match *match, unsigned y)
+/* Adding modulo 256, so that taking away is adding 255 times. */
+void tsr_match_census_row(const struct tsr_match *match, unsigned y, unsigned y_new, unsigned y_old)
 {
-    tsr_match_add_census(match, y, UINT8_MAX);
+    tsr_match_add_census(match, y_old, UINT8_MAX);
+    tsr_match_add_census(match, y_new, 1u);
+    tsr_match_finish_row(match, y);
 }

@@ -359,5 +359,11 @@ static void match_row(const struct tsr_match *match, unsigned y, unsigned y_new,
     tsr_match_write_row(match, y);
 }
 
-const struct tsr_match_kernel tsr_match_kernel_dsp = {"dsp", tsr_dsp_prefilter_row, tsr_dsp_add_row, match_row};
+const struct tsr_match_kernel tsr_match_kernel_dsp = {
+    .name = "dsp",
+    .prefilter_row = tsr_dsp_prefilter_row,
+    .add_row = tsr_dsp_add_row,
+    .match_row = match_row,
+    TSR_MATCH_PORTABLE_CENSUS,
+};
 #endif

@@ -11,8 +11,13 @@ static void move_and_finish(const struct tsr_match *match, unsigned y, unsigned 
     tsr_match_finish_row(match, y);
 }
 
-const struct tsr_match_kernel tsr_match_kernel_portable = {"portable", tsr_match_prefilter_row, tsr_match_add_row,
-                                                           move_and_finish};
+const struct tsr_match_kernel tsr_match_kernel_portable = {
+    .name = "portable",
+    .prefilter_row = tsr_match_prefilter_row,
+    .add_row = tsr_match_add_row,
+    .match_row = move_and_finish,
+    TSR_MATCH_PORTABLE_CENSUS,
+};
 
 #if defined(TSR_MATCH_HAS_X86)
 static bool has_avx2(void)

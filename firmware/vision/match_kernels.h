@@ -8,7 +8,12 @@
 
 #include <stdbool.h>
 
-#include "match_stages.h"
+#include "match_census.h"
+
+/* What a kernel without its own code for the census modes has in its table. */
+#define TSR_MATCH_PORTABLE_CENSUS                                                                                      \
+    .describe_row = tsr_match_describe_row, .add_census = tsr_match_add_census, .census_row = tsr_match_census_row,    \
+    .cost_row = tsr_match_cost_row, .smooth_row = tsr_match_smooth_row
 
 /* Cortex-M4, M7, M33: the DSP extension's parallel arithmetic (ARMv7-M ARM, A4.4.3), in Thumb state. */
 #if defined(__ARM_FEATURE_SIMD32) && defined(__thumb2__) && !defined(__ARM_ARCH_7A__)

@@ -140,5 +140,11 @@ static void match_row(const struct tsr_match *match, unsigned y, unsigned y_new,
     finish_row(match, y, y_new, y_old, &winners);
 }
 
-const struct tsr_match_kernel tsr_match_kernel_sse2 = {"sse2", tsr_match_prefilter_row, tsr_match_add_row, match_row};
+const struct tsr_match_kernel tsr_match_kernel_sse2 = {
+    .name = "sse2",
+    .prefilter_row = tsr_match_prefilter_row,
+    .add_row = tsr_match_add_row,
+    .match_row = match_row,
+    TSR_MATCH_PORTABLE_CENSUS,
+};
 #endif

@@ -3,18 +3,22 @@
  *
  *   sums      int16_t [D]     S(x,y,.) of one pixel
  *   offered   int16_t [D]     the same with what the pixel cannot search masked
- *   columns   uint8_t [W][D]  column sums of A, see tsr_match_add_row()
+ *   columns   uint8_t [W][D]  column sums of A or C, see tsr_match_add_row(); in smooth the costs C of
+ *                             three rows, [3][W][D], row y in y mod 3
  *   claims    uint16_t [W]    of every right pixel the least claim of a left pixel, TSR_MATCH_CLAIM()
  *   choices   uint16_t [W]    what every left pixel of the row chose, TSR_MATCH_CHOICE()
  *   texture   uint8_t [W]     column sums of |P_left - cap|
  *
- * The prefilter runs before all this and uses the room of columns for the
- * unfiltered rows above (left and right) and a row of vertical sums.
+ * and what the census modes have more (match_census.h). The prefilter runs before
+ * all this and uses the room of columns for the unfiltered rows above (left and
+ * right) and a row of vertical sums.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
 #ifndef TSR_VISION_MATCH_STAGES_H
 #define TSR_VISION_MATCH_STAGES_H
+
+#include <stdbool.h>
 
 #include "tsr/vision/match.h"
 
@@ -33,8 +37,9 @@ struct tsr_match_scratch {
 /* Bytes between offered and columns; kernels lay what they need over all in front of columns. */
 #define TSR_MATCH_EDGE_ROOM 8u
 
-/* A claim orders by a quarter of the least sum and then by d: eq. (17). */
-#define TSR_MATCH_CLAIM(sum, d) ((uint16_t)((unsigned)(sum) >> 2 << 7 | (unsigned)(d)))
+/* A claim orders by floor(m / 2^shift) and then by d: eq. (17). */
+#define TSR_MATCH_CLAIM_OF(sum, shift, d) ((uint16_t)((unsigned)(sum) >> (shift) << 7 | (unsigned)(d)))
+#define TSR_MATCH_CLAIM(sum, d) TSR_MATCH_CLAIM_OF(sum, 2, d) /* of the SAD modes */
 #define TSR_MATCH_CLAIM_D(claim) ((claim)&127)
 #define TSR_MATCH_CLAIM_NONE UINT16_MAX
 
@@ -44,6 +49,7 @@ struct tsr_match_scratch {
 #define TSR_MATCH_CHOICE_NONE UINT16_MAX
 
 struct tsr_match_scratch tsr_match_share_scratch(const struct tsr_match *match);
+unsigned tsr_match_claim_shift(uint8_t mode);
 
 /* What a kernel does. Its functions share nothing but the scratch. */
 struct tsr_match_kernel {
@@ -56,6 +62,16 @@ struct tsr_match_kernel {
     /* Move the column sums down (add frame row y_new, take y_old away), and make
      * row y of the map of them: eqs. (12) to (17). */
     void (*match_row)(const struct tsr_match *match, unsigned y, unsigned y_new, unsigned y_old);
+
+    /* The census modes: descriptors of frame row y into their place, eq. (40). */
+    void (*describe_row)(const struct tsr_match *match, unsigned y);
+    /* census: as add_row and match_row, with C of rows that are described, eqs. (41), (47). */
+    void (*add_census)(const struct tsr_match *match, unsigned y, unsigned times);
+    void (*census_row)(const struct tsr_match *match, unsigned y, unsigned y_new, unsigned y_old);
+    /* smooth: costs of the row y that was described last, eq. (41), and row y of the map from those of rows y - 1 ..
+     * y + 1 and the paths, eqs. (42) to (46). Rows in ascending order. */
+    void (*cost_row)(const struct tsr_match *match, unsigned y);
+    void (*smooth_row)(const struct tsr_match *match, unsigned y);
 };
 
 extern const struct tsr_match_kernel tsr_match_kernel_portable;
@@ -66,7 +82,10 @@ void tsr_match_add_row(const struct tsr_match *match, unsigned y, unsigned times
 void tsr_match_move_columns(const struct tsr_match *match, unsigned y_new, unsigned y_old);
 void tsr_match_finish_row(const struct tsr_match *match, unsigned y);
 
-/* Row y of the map: the choices that agree with the claims, eq. (17). */
+/* Choices of a row: begin, every x with its sums, and row y of the map from the choices that agree with the claims,
+ * eqs. (14) to (17). */
+void tsr_match_begin_choice(const struct tsr_match *match);
+void tsr_match_choose(const struct tsr_match *match, unsigned x, bool textured);
 void tsr_match_write_row(const struct tsr_match *match, unsigned y);
 
 /* The least of the offered sums, the lowest d that has it, and how many are

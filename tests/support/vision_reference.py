@@ -60,38 +60,41 @@ def offset_q4(below, least, above):
     return magnitude if offset > 0 else -magnitude
 
 
-def match(left, right, disparities, window, cap, uniqueness, texture_min, tolerance, start):
-    """Chapter 3. The map as a uint16 array."""
-    height, width = left.shape
-    left, right = prefilter(left, cap), prefilter(right, cap)
-    sums = volume(left, right, disparities, window, start)
-    texture = window_sums(np.abs(left - cap), window // 2)
+def choose(sums, textured, uniqueness, tolerance, start, claim_step, offset=offset_q4):
+    """Eqs. (14) to (17): the map of the sums S[y, x, d]. Claims compare floor(m / claim_step)."""
+    height, width, disparities = sums.shape
     result = np.full((height, width), INVALID, np.uint16)
     for y in range(height):
         winners, claims = {}, {}
         for x in range(width):
             offered = candidates(x, width, disparities, start)
-            if not offered:
-                continue
-            costs = sums[y, x]
-            best = min(offered, key=lambda d: (costs[d], d))
-            winners[x] = (best, offered)
-            claims.setdefault(x - start - best, []).append((int(costs[best]) // 4, best))
+            if offered:
+                best = min(offered, key=lambda d: (sums[y, x, d], d))
+                winners[x] = best, offered
+                claims.setdefault(x - start - best, []).append((int(sums[y, x, best]) // claim_step, best))
         for x, (best, offered) in winners.items():
             costs = sums[y, x].tolist()
-            least = costs[best]
-            if texture_min != TEST_OFF and texture[y, x] < texture_min * window:
+            if not textured[y, x]:
                 continue
-            if uniqueness != TEST_OFF and any(100 * costs[d] <= (100 + uniqueness) * least
+            if uniqueness != TEST_OFF and any(100 * costs[d] <= (100 + uniqueness) * costs[best]
                                               for d in offered if abs(d - best) > 1):
                 continue
             if tolerance != TEST_OFF and abs(min(claims[x - start - best])[1] - best) > tolerance:
                 continue
             value = 16 * best
             if best - 1 in offered and best + 1 in offered:
-                value += offset_q4(costs[best - 1], least, costs[best + 1])
+                value += offset(costs[best - 1], costs[best], costs[best + 1])
             result[y, x] = value
     return result
+
+
+def match(left, right, disparities, window, cap, uniqueness, texture_min, tolerance, start):
+    """Chapter 3. The map as a uint16 array."""
+    left, right = prefilter(left, cap), prefilter(right, cap)
+    sums = volume(left, right, disparities, window, start)
+    texture = window_sums(np.abs(left - cap), window // 2)
+    textured = texture >= (0 if texture_min == TEST_OFF else texture_min * window)
+    return choose(sums, textured, uniqueness, tolerance, start, 4)
 
 
 def median(disparity_map, valid_min):

@@ -4,7 +4,7 @@ incremental.
 SPDX-License-Identifier: Apache-2.0
 """
 import numpy as np
-from vision_reference import INVALID, TEST_OFF, inside, offset_q4, window_sums
+from vision_reference import inside, window_sums
 
 CROSS = [(-2, 0), (-1, 0), (1, 0), (2, 0), (0, -2), (0, -1), (0, 1), (0, 2)]
 KNIGHT = [(i, j) for i in (-2, -1, 1, 2) for j in (-2, -1, 1, 2) if abs(i) != abs(j)]
@@ -61,29 +61,3 @@ def smooth_sums(left, right, disparities, start):
 def census_sums(left, right, disparities, start, window):
     """Eq. (47)."""
     return box(distances(left, right, disparities, start), window // 2)
-
-
-def choose(sums, uniqueness, tolerance, start):
-    """Eqs. (14) to (17), on other sums."""
-    height, width, disparities = sums.shape
-    result = np.full((height, width), INVALID, np.uint16)
-    for y in range(height):
-        winners, claims = {}, {}
-        for x in range(width):
-            offered = [d for d in range(disparities) if 0 <= x - start - d < width]
-            if offered:
-                best = min(offered, key=lambda d: (sums[y, x, d], d))
-                winners[x] = best, offered
-                claims.setdefault(x - start - best, []).append((int(sums[y, x, best]), best))
-        for x, (best, offered) in winners.items():
-            costs = sums[y, x].tolist()
-            if uniqueness != TEST_OFF and any(100 * costs[d] <= (100 + uniqueness) * costs[best]
-                                              for d in offered if abs(d - best) > 1):
-                continue
-            if tolerance != TEST_OFF and abs(min(claims[x - start - best])[1] - best) > tolerance:
-                continue
-            value = 16 * best
-            if best - 1 in offered and best + 1 in offered:
-                value += offset_q4(costs[best - 1], costs[best], costs[best + 1])
-            result[y, x] = value
-    return result

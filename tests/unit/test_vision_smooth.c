@@ -12,7 +12,7 @@
 #define WIDTH_MAX 49
 #define HEIGHT_MAX 20
 #define PIXELS_MAX (WIDTH_MAX * HEIGHT_MAX)
-#define SCRATCH_MAX 8192
+#define SCRATCH_MAX 10240
 #define GUARD_LEN 16
 #define GUARD 0xa5
 
@@ -148,7 +148,7 @@ static void test_scratch_is_used_to_the_last_byte_and_no_further(void)
         }
     }
     struct tsr_match_config smooth = {.width = 160, .height = 120, .disparities = 32, .mode = TSR_MATCH_SMOOTH};
-    TEST_ASSERT_EQUAL(19264, tsr_match_scratch_len(&smooth));
+    TEST_ASSERT_EQUAL(27624, tsr_match_scratch_len(&smooth));
     TEST_ASSERT_EQUAL(39680, tsr_match_pair_len(&smooth));
 }
 
