@@ -17,6 +17,7 @@
 #include <string.h>
 
 #include "match_census.h"
+#include "match_plain.h"
 
 #define DISPARITIES_DEFAULT 32
 #define WINDOW_DEFAULT 9
@@ -26,6 +27,7 @@
 #define SAD8_CAP_ROOM 127 /* cap * window^2 <= 127: window sums fit 8 bits */
 #define UNIQUENESS_DEFAULT 15
 #define UNIQUENESS_DEFAULT_SMOOTH 25
+#define UNIQUENESS_DEFAULT_SSD 30
 #define UNIQUENESS_MAX 100
 #define TEXTURE_DEFAULT 1
 #define TOLERANCE_DEFAULT 1
@@ -50,6 +52,15 @@ static bool is_census(const struct tsr_match_config *config)
     return config->mode == TSR_MATCH_CENSUS || config->mode == TSR_MATCH_SMOOTH;
 }
 
+static uint8_t uniqueness_default(uint8_t mode)
+{
+    switch (mode) {
+    case TSR_MATCH_SMOOTH: return UNIQUENESS_DEFAULT_SMOOTH;
+    case TSR_MATCH_SSD: return UNIQUENESS_DEFAULT_SSD;
+    default: return UNIQUENESS_DEFAULT;
+    }
+}
+
 static struct tsr_match_config resolve(const struct tsr_match_config *config)
 {
     struct tsr_match_config resolved = *config;
@@ -57,8 +68,7 @@ static struct tsr_match_config resolve(const struct tsr_match_config *config)
     bool smooth = config->mode == TSR_MATCH_SMOOTH;
     resolved.window = smooth ? TSR_MATCH_SMOOTH_WINDOW : value_or(config->window, WINDOW_DEFAULT);
     resolved.prefilter_cap = value_or(config->prefilter_cap, cap_max(&resolved));
-    resolved.uniqueness_percent =
-        value_or(config->uniqueness_percent, smooth ? UNIQUENESS_DEFAULT_SMOOTH : UNIQUENESS_DEFAULT);
+    resolved.uniqueness_percent = value_or(config->uniqueness_percent, uniqueness_default(config->mode));
     resolved.texture_min = value_or(config->texture_min, TEXTURE_DEFAULT);
     resolved.lr_tolerance_px = value_or(config->lr_tolerance_px, TOLERANCE_DEFAULT);
     resolved.kernel = config->kernel != NULL ? config->kernel : tsr_match_kernel_at(0);
@@ -87,7 +97,7 @@ static const char *bad_field(const struct tsr_match_config *config)
         config->window > config->height) {
         return "window";
     }
-    if (config->mode > TSR_MATCH_SMOOTH) {
+    if (config->mode > TSR_MATCH_SSD) {
         return "mode";
     }
     if (cap_max(config) == 0) {
@@ -131,8 +141,12 @@ size_t tsr_match_scratch_len(const struct tsr_match_config *config)
         return 0;
     }
     struct tsr_match_config resolved = resolve(config);
-    size_t more = is_census(&resolved) ? tsr_match_census_scratch_len(&resolved) : 0;
-    return TSR_MATCH_SCRATCH_LEN(resolved.width, resolved.disparities) + more;
+    size_t common = TSR_MATCH_SCRATCH_LEN(resolved.width, resolved.disparities);
+    size_t columns_len = (size_t)resolved.width * resolved.disparities;
+    if (tsr_match_is_plain(resolved.mode)) {
+        return common - columns_len + tsr_match_plain_columns_len(&resolved) + tsr_match_plain_met_len(&resolved);
+    }
+    return is_census(&resolved) ? common + tsr_match_census_scratch_len(&resolved) : common;
 }
 
 size_t tsr_match_pair_len(const struct tsr_match_config *config)
@@ -179,7 +193,9 @@ struct tsr_match_scratch tsr_match_share_scratch(const struct tsr_match *match)
     scratch.offered = scratch.sums + disparities;
     scratch.columns = (uint8_t *)(scratch.offered + disparities) + TSR_MATCH_EDGE_ROOM;
     size_t rows = match->config.mode == TSR_MATCH_SMOOTH ? TSR_MATCH_SMOOTH_ROWS : 1u;
-    scratch.claims = (uint16_t *)(void *)(scratch.columns + rows * width * disparities);
+    size_t columns_len = tsr_match_is_plain(match->config.mode) ? tsr_match_plain_columns_len(&match->config)
+                                                                : rows * width * disparities;
+    scratch.claims = (uint16_t *)(void *)(scratch.columns + columns_len);
     scratch.choices = scratch.claims + width;
     scratch.texture = (uint8_t *)(scratch.choices + width);
     return scratch;
@@ -261,6 +277,8 @@ enum tsr_status tsr_match_run(struct tsr_match *match, uint16_t rows)
         unsigned row = match->rows_done;
         if (is_census(&match->config)) {
             tsr_match_census_step(match, row);
+        } else if (tsr_match_is_plain(match->config.mode)) {
+            tsr_match_plain_step(match, row);
         } else if (row < height) {
             match->kernel->prefilter_row(match, row);
         } else if (row < height + radius) {
@@ -281,6 +299,9 @@ uint16_t tsr_match_rows_total(const struct tsr_match *match)
 {
     if (is_census(&match->config)) {
         return (uint16_t)tsr_match_census_rows_total(&match->config);
+    }
+    if (tsr_match_is_plain(match->config.mode)) {
+        return (uint16_t)tsr_match_plain_rows_total(&match->config);
     }
     return (uint16_t)(2u * match->config.height + match->config.window / 2u);
 }

@@ -10,9 +10,10 @@
  */
 #include "median_wide.h"
 
+#include <stdbool.h>
+
 #define RADIUS 2u
 #define SIDE (2u * RADIUS + 1u)
-#define VALID_MIN ((RADIUS + 1u) * (RADIUS + 1u))
 
 /* The valid values of a column, ascending. */
 struct column {
@@ -92,6 +93,14 @@ static struct rows rows_around(const struct tsr_median *median, unsigned y, uint
     return rows;
 }
 
+/* How many of i - RADIUS .. i + RADIUS lie in 0 .. len - 1. */
+static unsigned count_inside(unsigned i, unsigned len)
+{
+    unsigned before = i < RADIUS ? i : RADIUS;
+    unsigned behind = len - 1u - i < RADIUS ? len - 1u - i : RADIUS;
+    return before + 1u + behind;
+}
+
 void tsr_median_filter_wide_row(const struct tsr_median *median, unsigned y)
 {
     unsigned width = median->width;
@@ -99,6 +108,7 @@ void tsr_median_filter_wide_row(const struct tsr_median *median, unsigned y)
     uint16_t *saved = above + (size_t)(y % 2u) * width;
     uint16_t *row = median->map + (size_t)y * width;
     const struct rows rows = rows_around(median, y, above);
+    unsigned rows_inside = count_inside(y, median->height);
     struct window window = {.count = 0};
     for (unsigned entering = 0; entering < width + RADIUS; entering++) {
         struct column *column = &window.columns[entering % SIDE];
@@ -113,7 +123,8 @@ void tsr_median_filter_wide_row(const struct tsr_median *median, unsigned y)
         if (entering >= RADIUS) {
             unsigned x = entering - RADIUS;
             saved[x] = row[x];
-            row[x] = window.count >= VALID_MIN ? window.values[(window.count - 1u) / 2u] : TSR_DISPARITY_INVALID;
+            bool enough = 2u * window.count > rows_inside * count_inside(x, width); /* docs/math.md, eq. (80) */
+            row[x] = enough ? window.values[(window.count - 1u) / 2u] : TSR_DISPARITY_INVALID;
         }
     }
 }

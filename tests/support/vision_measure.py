@@ -15,70 +15,17 @@ import sys
 
 import cv2
 import numpy as np
+import stereo_pairs
+import vision_library
+from vision_library import (LIB, SIZE, U16, ChangeConfig, ChangeResult, SimilarityConfig, SimilarityResult, pointer,
+                            view)
 
-INVALID = 65535
-SIZES = (((160, 120), 32), ((320, 240), 64))
 NOISE_SIGMA = 2
 LIGHT_GAIN = 1.3
 OBJECT_PARTS = (0.02, 0.03, 0.05, 0.10)
 NEARER_PX = 2  # an object is at least this much nearer than everything it hides
 TEXTURE_STD_MIN = 12  # gray levels: what counts as a textured patch
-U8, U16, I16, U32, SIZE = ctypes.c_uint8, ctypes.c_uint16, ctypes.c_int16, ctypes.c_uint32, ctypes.c_size_t
-
-
-class Gray(ctypes.Structure):
-    _fields_ = [("pixels", ctypes.c_void_p), ("width", U16), ("height", U16), ("stride", U16)]
-
-
-class MatchConfig(ctypes.Structure):
-    _fields_ = [("width", U16), ("height", U16), ("disparities", U16), ("window", U8), ("mode", U8), ("prefilter_cap", U8),
-                ("uniqueness_percent", U8), ("texture_min", U8), ("lr_tolerance_px", U8), ("search_start_px", I16),
-                ("kernel", ctypes.c_void_p)]
-
-
-class SimilarityConfig(ctypes.Structure):
-    _fields_ = [("width", U16), ("height", U16), ("block_log2", U8), ("clip_q4", U8), ("threshold_q8", U16),
-                ("min_blocks", U16)]
-
-
-class SimilarityResult(ctypes.Structure):
-    _fields_ = [("mse_q8", U32), ("both_count", U32), ("one_count", U32), ("blocks", U16), ("different_blocks", U16)]
-
-
-class ChangeConfig(ctypes.Structure):
-    _fields_ = [("width", U16), ("height", U16), ("reduction", U8), ("amplification", U8), ("deviation_min", U8),
-                ("deviation_max", U8), ("min_cells", U16), ("settle_frames", U8)]
-
-
-class ChangeResult(ctypes.Structure):
-    _fields_ = [("changed", ctypes.c_bool), ("settling", ctypes.c_bool), ("changed_cells", U16)]
-
-
-def load_library():
-    build = pathlib.Path(os.environ.get("TSR_BUILD", "build"))
-    found = sorted(build.rglob("libtsr_firmware.so"))
-    if not found:
-        sys.exit(f"no libtsr_firmware.so under {build}")
-    library = ctypes.CDLL(str(found[0]))
-    library.tsr_match_scratch_len.restype = SIZE
-    library.tsr_change_state_len.restype = SIZE
-    library.tsr_similarity_is_similar.restype = ctypes.c_bool
-    library.tsr_match_start.argtypes = [ctypes.c_void_p, ctypes.c_void_p, Gray, Gray, ctypes.c_void_p, SIZE,
-                                        ctypes.c_void_p, SIZE]
-    return library
-
-
-LIB = load_library()
 RNG = np.random.default_rng(int(os.environ.get("SEED", "77")))
-
-
-def pointer(array):
-    return array.ctypes.data_as(ctypes.c_void_p)
-
-
-def view(picture):
-    height, width = picture.shape
-    return Gray(picture.ctypes.data, width, height, width)
 
 
 def as_picture(values):
@@ -91,19 +38,7 @@ def noisy(picture):
 
 def match(left, right, disparities):
     """The map after matcher and median, with their defaults."""
-    left, right = left.copy(), right.copy()
-    height, width = left.shape
-    config = MatchConfig(width, height, disparities)
-    result = np.zeros((height, width), np.uint16)
-    scratch = np.zeros(LIB.tsr_match_scratch_len(ctypes.byref(config)), np.uint8)
-    state = np.zeros(512, np.uint8)
-    assert LIB.tsr_match_start(pointer(state), ctypes.byref(config), view(left), view(right), pointer(result),
-                               result.size, pointer(scratch), scratch.size) == 0
-    assert LIB.tsr_match_run(pointer(state), U16(65535)) == 0
-    assert LIB.tsr_median_start(pointer(state), U16(width), U16(height), pointer(result), SIZE(result.size),
-                                pointer(scratch), SIZE(scratch.size)) == 0
-    assert LIB.tsr_median_run(pointer(state), U16(65535)) == 0
-    return result
+    return vision_library.refine(vision_library.match(left, right, disparities), ["median3"])
 
 
 def is_similar(a, b):
@@ -113,28 +48,6 @@ def is_similar(a, b):
     assert LIB.tsr_similarity_run(pointer(state), U16(65535)) == 0
     assert LIB.tsr_similarity_get_result(pointer(state), ctypes.byref(result)) == 0
     return LIB.tsr_similarity_is_similar(ctypes.byref(config), ctypes.byref(result))
-
-
-def load_pair(folder, width, height):
-    """Centre-cropped to 4:3, reduced by area; the truth by nearest, in px of the reduced picture."""
-    left, right = (cv2.imread(str(folder / f"{side}.png"), cv2.IMREAD_GRAYSCALE) for side in ("left", "right"))
-    truth = cv2.imread(str(folder / "gt256_left.png"), cv2.IMREAD_UNCHANGED).astype(np.float32) / 256
-    rows, columns = left.shape
-    crop_width, crop_height = min(columns, rows * 4 // 3), min(rows, columns * 3 // 4)
-    x, y = (columns - crop_width) // 2, (rows - crop_height) // 2
-    left, right, truth = (p[y:y + crop_height, x:x + crop_width] for p in (left, right, truth))
-    left, right = (cv2.resize(p, (width, height), interpolation=cv2.INTER_AREA) for p in (left, right))
-    return left, right, cv2.resize(truth, (width, height), interpolation=cv2.INTER_NEAREST) * width / crop_width
-
-
-def quality(result, truth):
-    known, valid = truth > 0, result != INVALID
-    error = np.abs(result / 16 - truth)
-    judged = known & valid
-    right = judged & (error <= 1)
-    return {"correct": right.sum() / known.sum(), "bad1": 1 - right.sum() / judged.sum(),
-            "correct_half": (judged & (error <= 0.5)).sum() / known.sum(), "median_error": np.median(error[judged]),
-            "valid": judged.sum() / known.sum()}
 
 
 def light_ramp(height, width):
@@ -184,10 +97,11 @@ def with_object(left, right, truth, disparities, part, others):
 
 
 def measure_quality(pairs, disparities):
-    clean = [quality(match(left, right, disparities), truth) for left, right, truth in pairs]
-    noise = [quality(match(noisy(left), noisy(right), disparities), truth) for left, right, truth in pairs]
-    return {name: {key: round(float(np.mean([q[key] for q in values])), 4) for key in values[0]}
-            for name, values in (("clean", clean), ("noise", noise))}
+    def mean(change):
+        return stereo_pairs.mean([stereo_pairs.judge(match(change(left), change(right), disparities), truth)
+                                  for left, right, truth in pairs])
+
+    return {"clean": mean(lambda picture: picture), "noise": mean(noisy)}
 
 
 def measure_similarity(pairs, disparities, trials):
@@ -247,11 +161,11 @@ def measure_change(pairs, trials):
 
 
 def main():
-    folders = sorted(pathlib.Path(sys.argv[1]).glob("mb*"))
+    folders = stereo_pairs.folders(pathlib.Path(sys.argv[1]))
     trials = int(sys.argv[2]) if len(sys.argv) > 2 else 30
     report = {}
-    for (width, height), disparities in SIZES:
-        pairs = [load_pair(folder, width, height) for folder in folders]
+    for width, height, disparities in stereo_pairs.CASES:
+        pairs = [stereo_pairs.load(folder, width, height) for folder in folders]
         report[f"{width}x{height}"] = {"pairs": len(pairs), "quality": measure_quality(pairs, disparities),
                                        "similar": measure_similarity(pairs, disparities, trials),
                                        "woken": measure_change(pairs, trials)}

@@ -47,6 +47,16 @@ def volume(left, right, disparities, window, start):
     return sums
 
 
+def plain_sums(left, right, disparities, window, start, squared):
+    """Eqs. (23), (24)."""
+    if squared:
+        def met(d):
+            return right[:, inside(np.arange(left.shape[1]) - start - d, 0, left.shape[1] - 1)]
+        left, right = left.astype(np.int64), right.astype(np.int64)
+        return np.stack([window_sums((left - met(d)) ** 2, window // 2) for d in range(disparities)], axis=-1)
+    return volume(left.astype(np.int64), right.astype(np.int64), disparities, window, start)
+
+
 def candidates(x, width, disparities, start):
     """D(x): the d whose right pixel lies in the picture."""
     return [d for d in range(disparities) if 0 <= x - start - d < width]
@@ -56,6 +66,14 @@ def candidates(x, width, disparities, start):
 def offset_q4(below, least, above):
     """Eq. (16), to nearest, ties away from zero."""
     offset = Fraction(16 * (below - above), 2 * (max(below, above) - least))
+    magnitude = math.floor(abs(offset) + Fraction(1, 2))
+    return magnitude if offset > 0 else -magnitude
+
+
+@functools.lru_cache(maxsize=None)
+def parabola_offset_q4(below, least, above):
+    """Eq. (25), to nearest, ties away from zero."""
+    offset = Fraction(16 * (below - above), 2 * (below - 2 * least + above))
     magnitude = math.floor(abs(offset) + Fraction(1, 2))
     return magnitude if offset > 0 else -magnitude
 

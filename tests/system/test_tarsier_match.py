@@ -92,13 +92,21 @@ def small_pair(folder):
     map_quality.write_png(folder / "r.png", right)
     for start, options, settings in ((0, [], (15, 1, 1)), (-3, ["--uniqueness", "off", "--texture", 5], (255, 5, 1)),
                                      (4, ["--uniqueness", 3, "--lr", "off"], (3, 1, 255))):
-        wanted = vision_reference.match(left, right, 16, 7, 63 // 7, *settings, start)
+        wanted = vision_reference.match(left, right, 16, 7, 7, *settings, start)
         wanted = refine_reference.fill(refine_reference.speckle(refine_reference.median(wanted, 5), 12, 8))
         match_json(folder / "l.pgm", folder / "r.png", "--disparities", 16, "--window", 7, "--search-start", start,
                    *options, "--refine", "median5,speckle,fill", "--speckle-size", 12, "--speckle-difference", 0.5,
                    "-o", folder / "small.pfm")
         got = map_quality.read_pfm(folder / "small.pfm")
         check(np.array_equal(got, wanted / 16 + start), f"search start {start}: not the reference's map")
+    for mode, sums, offset in (("raw", False, vision_reference.offset_q4),
+                               ("ssd", True, vision_reference.parabola_offset_q4)):
+        wanted = vision_reference.choose(vision_reference.plain_sums(left, right, 16, 9, 0, sums),
+                                         np.ones(left.shape, bool), 30 if sums else 15, 1, 0, 1, offset)
+        found = match_json(folder / "l.pgm", folder / "r.png", "--disparities", 16, "--mode", mode, "--refine", "none",
+                           "-o", folder / "plain.pfm")
+        check(found["window"] == 9 and np.array_equal(map_quality.read_pfm(folder / "plain.pfm"),
+              np.where(wanted == 65535, np.inf, wanted / 16)), f"{mode}: not the reference's map")
     none = match_json(folder / "l.pgm", folder / "r.png", "--disparities", 16, "--refine", "none", "-o",
                       folder / "none.pfm")
     check(none["refine"] == [] and none["refine_scratch_bytes"] == 0, none)
@@ -128,10 +136,15 @@ def bad_input(scene, folder):
                            ("--texture", ("0", "128", "1x")), ("--lr", ("0", "128", "")),
                            ("--search-start", (129, -129, 70000)), ("--speckle-size", (1, 0, 4097, -5)),
                            ("--speckle-difference", (0, -1, 4096, "nan")), ("--diffusion-iterations", (0, 101, 257)),
-                           ("--diffusion-edge", (0, 16)), ("--mode", ("raw", "", "SAD")),
+                           ("--diffusion-edge", (0, 16)), ("--mode", ("rank", "", "SAD")),
                            ("--refine", ("median4", "median3,,fill", "", "fill,none", ",".join(["fill"] * 9)))):
         for value in values:
             refuse_pair(f"{option} {value}", "--disparities", 32, f"{option}={value}", mentions=[option])
+    for mode, option, value in (("smooth", "--window", 9), ("smooth", "--texture", 2), ("census", "--texture", "off"),
+                                ("ssd", "--texture", 1), ("sad8", "--window", 13), ("census", "--window", 300)):
+        refuse_pair(f"{option} {value} in {mode}", "--disparities", 32, "--mode", mode, option, value,
+                    mentions=[option, "takes" if mode == "census" and option == "--window" else mode])
+    refuse("too low for smooth", low, low, "--disparities", 16, "--mode", "smooth", "-o", out, mentions=["--mode", "7 rows"])
     refuse_pair("unknown option", "--disparities", 32, "--fast", mentions=["--fast"])
     refuse("other size", left, scene / "right320/000.pgm", "--disparities", 32, "-o", out,
            mentions=["right320", "size", "320x240", "160x120"], left=[out])

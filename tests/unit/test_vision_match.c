@@ -102,7 +102,7 @@ static void test_check_names_the_bad_field(void)
     EXPECT_BAD(window, 3);
     EXPECT_BAD(window, 6);
     EXPECT_BAD(window, 17);
-    EXPECT_BAD(mode, TSR_MATCH_SMOOTH + 1);
+    EXPECT_BAD(mode, TSR_MATCH_SSD + 1);
     EXPECT_BAD(prefilter_cap, 8);
     EXPECT_BAD(uniqueness_percent, 101);
     EXPECT_BAD(texture_min, 128);

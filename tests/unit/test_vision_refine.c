@@ -243,10 +243,18 @@ static void test_median5_by_hand(void)
     }
     run_step(TSR_REFINE_MEDIAN5, NULL, values, 5, 5);
     TEST_ASSERT_EQUAL(12, values[12]);
-    TEST_ASSERT_EQUAL(10, values[0]); /* 0 2 7 9 10 14 17 20 24: as many as a corner needs */
-    uint16_t corner[9] = {5, 5, 5, 5, 5, 5, 5, 5, NONE};
-    run_step(TSR_REFINE_MEDIAN5, NULL, corner, 3, 3);
-    TEST_ASSERT_EQUAL_HEX16(NONE, corner[4]); /* eight are too few */
+    TEST_ASSERT_EQUAL(10, values[0]); /* 0 2 7 9 10 14 17 20 24: all a corner has */
+    /* More than half of the nine that lie inside, then just less. */
+    uint16_t five[9] = {5, NONE, 5, NONE, 5, NONE, 5, NONE, 5};
+    run_step(TSR_REFINE_MEDIAN5, NULL, five, 3, 3);
+    for (unsigned i = 0; i < 9; i++) {
+        TEST_ASSERT_EQUAL(5, five[i]);
+    }
+    uint16_t four[9] = {5, NONE, 5, NONE, NONE, NONE, 5, NONE, 5};
+    run_step(TSR_REFINE_MEDIAN5, NULL, four, 3, 3);
+    for (unsigned i = 0; i < 9; i++) {
+        TEST_ASSERT_EQUAL_HEX16(NONE, four[i]);
+    }
 }
 
 static void test_speckle_by_hand(void)

@@ -185,7 +185,7 @@ static void test_refuses_modes_without_code(void)
 {
     for (unsigned mode = 0; mode <= UINT8_MAX; mode++) {
         struct tsr_match_config config = config_of((uint8_t)mode, 32, 16);
-        bool known = mode <= TSR_MATCH_SMOOTH;
+        bool known = mode <= TSR_MATCH_SSD;
         const char *field = NULL;
         TEST_ASSERT_EQUAL(known ? TSR_OK : TSR_ERR_ARG, tsr_match_check(&config, &field));
         TEST_ASSERT_EQUAL_STRING(known ? NULL : "mode", field);

@@ -18,70 +18,13 @@ except ImportError:
 SOURCE = pathlib.Path(os.environ.get("TSR_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
 sys.path.insert(0, str(SOURCE / "tests" / "support"))
 import vision_reference as reference  # noqa: E402
+from vision_library import (AGAIN, LIB, OK, SIZE, STATE_LEN, U8, U16, ChangeConfig, ChangeResult, Gray,  # noqa: E402
+                            MatchConfig, SimilarityConfig, SimilarityResult, pointer, portable_kernel)
+import vision_library  # noqa: E402
 
-OK, AGAIN = 0, 1
-STATE_LEN = 512  # more than any module's struct
-U8, U16, I16, U32, SIZE = ctypes.c_uint8, ctypes.c_uint16, ctypes.c_int16, ctypes.c_uint32, ctypes.c_size_t
-
-
-def load_library():
-    build = pathlib.Path(os.environ.get("TSR_BUILD", "build"))
-    found = sorted(build.rglob("libtsr_firmware.so"))
-    if not found:
-        sys.exit(f"no libtsr_firmware.so under {build}")
-    return ctypes.CDLL(str(found[0]))
-
-
-class Gray(ctypes.Structure):
-    _fields_ = [("pixels", ctypes.c_void_p), ("width", U16), ("height", U16), ("stride", U16)]
-
-
-class MatchConfig(ctypes.Structure):
-    _fields_ = [("width", U16), ("height", U16), ("disparities", U16), ("window", U8), ("mode", U8), ("prefilter_cap", U8),
-                ("uniqueness_percent", U8), ("texture_min", U8), ("lr_tolerance_px", U8), ("search_start_px", I16),
-                ("kernel", ctypes.c_void_p)]
-
-
-class ChangeConfig(ctypes.Structure):
-    _fields_ = [("width", U16), ("height", U16), ("reduction", U8), ("amplification", U8), ("deviation_min", U8),
-                ("deviation_max", U8), ("min_cells", U16), ("settle_frames", U8)]
-
-
-class ChangeResult(ctypes.Structure):
-    _fields_ = [("changed", ctypes.c_bool), ("settling", ctypes.c_bool), ("changed_cells", U16)]
-
-
-class SimilarityConfig(ctypes.Structure):
-    _fields_ = [("width", U16), ("height", U16), ("block_log2", U8), ("clip_q4", U8), ("threshold_q8", U16),
-                ("min_blocks", U16)]
-
-
-class SimilarityResult(ctypes.Structure):
-    _fields_ = [("mse_q8", U32), ("both_count", U32), ("one_count", U32), ("blocks", U16), ("different_blocks", U16)]
-
-
-LIB = load_library()
-for name in ("tsr_match_scratch_len", "tsr_change_state_len"):
-    getattr(LIB, name).restype = SIZE
-LIB.tsr_similarity_is_similar.restype = ctypes.c_bool
-LIB.tsr_match_start.argtypes = [ctypes.c_void_p, ctypes.c_void_p, Gray, Gray, ctypes.c_void_p, SIZE, ctypes.c_void_p,
-                                SIZE]
 DEFAULT_UNIQUENESS, DEFAULT_TEXTURE, MEDIAN_VALID_MIN = 15, 1, 4
 SEED = int(os.environ.get("SEED", "1"))
 RNG = np.random.default_rng(SEED)
-
-
-def portable_kernel():
-    """The definition, which every other kernel is held to by property/test_vision_kernels."""
-    LIB.tsr_match_kernel_at.restype = ctypes.c_void_p
-    kernels = []
-    while kernels == [] or kernels[-1] is not None:
-        kernels.append(LIB.tsr_match_kernel_at(len(kernels)))
-    return kernels[-2]
-
-
-def pointer(array):
-    return array.ctypes.data_as(ctypes.c_void_p)
 
 
 def padded(picture, stride):
@@ -91,20 +34,11 @@ def padded(picture, stride):
 
 
 def run_match(left, right, config, strides):
-    config.kernel = portable_kernel()
     height, width = left.shape
+    config.kernel = portable_kernel()
     frames = [padded(left, strides[0]), padded(right, strides[1])]
     views = [Gray(f.ctypes.data, width, height, f.shape[1]) for f in frames]
-    disparity_map = np.zeros((height, width), np.uint16)
-    scratch = RNG.integers(0, 256, LIB.tsr_match_scratch_len(ctypes.byref(config)), np.uint8)
-    state = np.zeros(STATE_LEN, np.uint8)
-    status = LIB.tsr_match_start(pointer(state), ctypes.byref(config), *views, pointer(disparity_map),
-                                 disparity_map.size, pointer(scratch), scratch.size)
-    assert status == OK, status
-    while status != OK or not LIB.tsr_match_rows_done(pointer(state)):
-        status = LIB.tsr_match_run(pointer(state), U16(int(RNG.integers(1, height))))
-        assert status in (OK, AGAIN), status
-    return disparity_map
+    return vision_library.run_match(views, config, np.zeros((height, width), np.uint16), RNG)
 
 
 def blocky(height, width):

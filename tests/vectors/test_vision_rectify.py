@@ -17,22 +17,12 @@ except ImportError:
     print("tarsier skipped: test_vision_rectify: python3-numpy is not installed")
     sys.exit(77)
 
-OK, FORMAT = 0, -4
-STATE_LEN = 512  # more than any struct of the module
+SOURCE = pathlib.Path(os.environ.get("TSR_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
+sys.path.insert(0, str(SOURCE / "tests" / "support"))
+from vision_library import LIB, OK, STATE_LEN, U16, Gray  # noqa: E402
+
+FORMAT = -4
 CASES = 60
-U16 = ctypes.c_uint16
-
-
-class Gray(ctypes.Structure):
-    _fields_ = [("pixels", ctypes.c_void_p), ("width", U16), ("height", U16), ("stride", U16)]
-
-
-def load_library():
-    build = pathlib.Path(os.environ.get("TSR_BUILD", "build"))
-    found = sorted(build.rglob("libtsr_firmware.so"))
-    if not found:
-        sys.exit(f"no libtsr_firmware.so under {build}")
-    return ctypes.CDLL(str(found[0]))
 
 
 def nearest(numerator, denominator):
@@ -117,33 +107,32 @@ def random_case(rng):
     return step, size, source_size, grids
 
 
-def check_case(library, rng):
+def check_case(LIB, rng):
     step, size, source_size, grids = random_case(rng)
     q = [[positions(grid[axis], size, source_size[axis], step) for axis in range(2)] for grid in grids]
     own_row = np.arange(size[1])[:, None]
     rows_above = [max(0, int((own_row - q_y // 256).max())) for _, q_y in q]
     data = table_bytes(size, source_size, step, rows_above, grids)
     table = ctypes.create_string_buffer(STATE_LEN)
-    status = library.tsr_rectify_open(table, data, ctypes.c_size_t(len(data)))
+    status = LIB.tsr_rectify_open(table, data, ctypes.c_size_t(len(data)))
     assert status == OK, f"open: {status}"
     more = table_bytes(size, source_size, step, [rows_above[0] + 1, rows_above[1]], grids)
-    assert library.tsr_rectify_open(ctypes.create_string_buffer(STATE_LEN), more,
+    assert LIB.tsr_rectify_open(ctypes.create_string_buffer(STATE_LEN), more,
                                     ctypes.c_size_t(len(more))) == FORMAT, "a row too many"
     source = np.ascontiguousarray(rng.integers(0, 256, source_size[::-1], dtype=np.uint8))
     for side in range(2):
         target = np.zeros(size[::-1], dtype=np.uint8)
         work = ctypes.create_string_buffer(STATE_LEN)
-        status = library.tsr_rectify_start(work, table, side, Gray(source.ctypes.data, *source_size, source_size[0]),
+        status = LIB.tsr_rectify_start(work, table, side, Gray(source.ctypes.data, *source_size, source_size[0]),
                                            Gray(target.ctypes.data, *size, size[0]))
         assert status == OK, f"start: {status}"
-        assert library.tsr_rectify_run(work, U16(size[1])) == OK
+        assert LIB.tsr_rectify_run(work, U16(size[1])) == OK
         assert np.array_equal(target, rectified(source, *q[side])), f"{size} from {source_size}, step {step}"
 
 
-library = load_library()
 seed = int(os.environ.get("SEED", "1"))
 print(f"replay: SEED={seed} python3 tests/vectors/test_vision_rectify.py")
 rng = np.random.default_rng(seed)
 for _ in range(CASES):
-    check_case(library, rng)
+    check_case(LIB, rng)
 print(f"{CASES} tables, both sides: equal")

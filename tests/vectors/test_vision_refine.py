@@ -18,45 +18,11 @@ except ImportError:
 SOURCE = pathlib.Path(os.environ.get("TSR_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
 sys.path.insert(0, str(SOURCE / "tests" / "support"))
 import refine_reference as reference  # noqa: E402
+from vision_library import (AGAIN, ANY, LIB, OK, SIZE, STATE_LEN, STEPS, U8, U16, DiffusionConfig,  # noqa: E402
+                            RefineConfig, SpeckleConfig, pointer)
 
-OK, AGAIN, STATE_LEN = 0, 1, 512
-U8, U16, SIZE, ANY = ctypes.c_uint8, ctypes.c_uint16, ctypes.c_size_t, ctypes.c_void_p
-STEPS = {name: i + 1 for i, name in
-         enumerate(("median3", "median5", "speckle", "fill", "gaussian3", "gaussian5", "diffusion"))}
-
-
-class SpeckleConfig(ctypes.Structure):
-    _fields_ = [("min_size", U16), ("max_difference_q4", U16)]
-
-
-class DiffusionConfig(ctypes.Structure):
-    _fields_ = [("iterations", U8), ("edge_q4", U8), ("rate_q8", U8)]
-
-
-class RefineConfig(ctypes.Structure):
-    _fields_ = [("width", U16), ("height", U16), ("steps", U8 * 8), ("speckle", SpeckleConfig),
-                ("diffusion", DiffusionConfig), ("fill_rule", U8)]
-
-
-def load_library():
-    build = pathlib.Path(os.environ.get("TSR_BUILD", "build"))
-    found = sorted(build.rglob("libtsr_firmware.so"))
-    if not found:
-        sys.exit(f"no libtsr_firmware.so under {build}")
-    library = ctypes.CDLL(str(found[0]))
-    library.tsr_refine_scratch_len.restype = SIZE
-    library.tsr_refine_start.argtypes = [ANY, ANY, ANY, SIZE, ANY, SIZE]
-    library.tsr_refine_run.argtypes = [ANY, U16]
-    return library
-
-
-LIB = load_library()
 SEED = int(os.environ.get("SEED", "1"))
 RNG = np.random.default_rng(SEED)
-
-
-def pointer(array):
-    return array.ctypes.data_as(ANY)
 
 
 def run_steps(before, names, speckle=(0, 0), diffusion=(0, 0, 0)):

@@ -19,42 +19,12 @@ SOURCE = pathlib.Path(os.environ.get("TSR_SOURCE", pathlib.Path(__file__).resolv
 sys.path.insert(0, str(SOURCE / "tests" / "support"))
 import vision_reference  # noqa: E402
 import vision_smooth_reference as reference  # noqa: E402
+from vision_library import LIB, Gray, MatchConfig, portable_kernel  # noqa: E402
+import vision_library  # noqa: E402
 
-OK, AGAIN, CENSUS, SMOOTH = 0, 1, 2, 3
-STATE_LEN = 512  # more than the module's struct
-U8, U16, I16, SIZE = ctypes.c_uint8, ctypes.c_uint16, ctypes.c_int16, ctypes.c_size_t
+CENSUS, SMOOTH = 2, 3
 SEED = int(os.environ.get("SEED", "1"))
 RNG = np.random.default_rng(SEED)
-
-
-class Gray(ctypes.Structure):
-    _fields_ = [("pixels", ctypes.c_void_p), ("width", U16), ("height", U16), ("stride", U16)]
-
-
-class MatchConfig(ctypes.Structure):
-    _fields_ = [("width", U16), ("height", U16), ("disparities", U16), ("window", U8), ("mode", U8), ("prefilter_cap", U8),
-                ("uniqueness_percent", U8), ("texture_min", U8), ("lr_tolerance_px", U8), ("search_start_px", I16),
-                ("kernel", ctypes.c_void_p)]
-
-
-def load_library():
-    build = pathlib.Path(os.environ.get("TSR_BUILD", "build"))
-    found = sorted(build.rglob("libtsr_firmware.so"))
-    if not found:
-        sys.exit(f"no libtsr_firmware.so under {build}")
-    library = ctypes.CDLL(str(found[0]))
-    library.tsr_match_scratch_len.restype = SIZE
-    library.tsr_match_pair_len.restype = SIZE
-    library.tsr_match_start.argtypes = [ctypes.c_void_p, ctypes.c_void_p, Gray, Gray, ctypes.c_void_p, SIZE,
-                                        ctypes.c_void_p, SIZE]
-    return library
-
-
-LIB = load_library()
-
-
-def pointer(array):
-    return array.ctypes.data_as(ctypes.c_void_p)
 
 
 def run_match(left, right, config, in_pair_layout):
@@ -72,15 +42,8 @@ def run_match(left, right, config, in_pair_layout):
         frames = [np.pad(p, ((0, 0), (0, s - width)), constant_values=77) for p, s in zip((left, right), strides)]
         views = [Gray(f.ctypes.data, width, height, f.shape[1]) for f in frames]
         result = np.zeros((height, width), np.uint16)
-    scratch = RNG.integers(0, 256, LIB.tsr_match_scratch_len(ctypes.byref(config)), np.uint8)
-    state = np.zeros(STATE_LEN, np.uint8)
-    assert LIB.tsr_match_start(pointer(state), ctypes.byref(config), *views, pointer(result), result.size,
-                               pointer(scratch), scratch.size) == OK
-    status = AGAIN
-    while status == AGAIN:
-        status = LIB.tsr_match_run(pointer(state), U16(int(RNG.integers(1, height))))
-    assert status == OK, status
-    return result
+    config.kernel = portable_kernel()
+    return vision_library.run_match(views, config, result, RNG)
 
 
 def seen_twice(height, width, shift):

@@ -19,15 +19,21 @@ namespace tsr
 namespace
 {
 
+/* What a mode takes of --window (null: it has its own) and whether it tests texture. */
 struct Mode {
     std::string_view name;
-    void (*select)(tsr_match_config &);
+    tsr_match_mode mode;
+    const char *window;
+    bool has_texture;
 };
+constexpr const char *kAnyWindow = "odd, 5 .. 15, at most the height of the pictures";
 constexpr std::array kModes = {
-    Mode{"sad", [](tsr_match_config &config) { config.mode = TSR_MATCH_SAD; }},
-    Mode{"sad8", [](tsr_match_config &config) { config.mode = TSR_MATCH_SAD8; }},
-    Mode{"census", [](tsr_match_config &config) { config.mode = TSR_MATCH_CENSUS; }},
-    Mode{"smooth", [](tsr_match_config &config) { config.mode = TSR_MATCH_SMOOTH; }},
+    Mode{"sad", TSR_MATCH_SAD, kAnyWindow, true},
+    Mode{"sad8", TSR_MATCH_SAD8, "odd, 5 .. 11 in mode sad8, at most the height of the pictures", true},
+    Mode{"census", TSR_MATCH_CENSUS, kAnyWindow, false},
+    Mode{"smooth", TSR_MATCH_SMOOTH, nullptr, false},
+    Mode{"raw", TSR_MATCH_RAW, kAnyWindow, false},
+    Mode{"ssd", TSR_MATCH_SSD, kAnyWindow, false},
 };
 
 struct Step {
@@ -47,7 +53,6 @@ struct Field {
 };
 constexpr std::array kFields = {
     Field{"disparities", "--disparities", "16 .. 128, a multiple of 8, at most the width of the pictures"},
-    Field{"window", "--window", "odd, 5 .. 15, at most the height of the pictures"},
     Field{"uniqueness_percent", "--uniqueness", "1 .. 100, or off"},
     Field{"texture_min", "--texture", "1 .. 127, or off"},
     Field{"lr_tolerance_px", "--lr", "1 .. 127, or off"},
@@ -112,6 +117,33 @@ const typename Table::value_type &find_name(const Table &table, const std::strin
     throw InputError("command line", option, "'" + name + "' is none of: " + names);
 }
 
+[[noreturn]] void refuse_window(const Mode &mode)
+{
+    if (mode.window == nullptr) {
+        throw InputError("command line", "--mode", "smooth takes pictures of at least 7 rows");
+    }
+    throw InputError("command line", "--window", std::string("takes ") + mode.window);
+}
+
+/* The mode, and what it makes of --window and --texture. */
+void read_mode(const MatchOptions &options, const Mode &mode, tsr_match_config &config)
+{
+    config.mode = static_cast<std::uint8_t>(mode.mode);
+    if (options.window && mode.window == nullptr) {
+        throw InputError("command line", "--window", "mode " + std::string(mode.name) + " has a window of its own");
+    }
+    if (options.texture && !mode.has_texture) {
+        throw InputError("command line", "--texture", "mode " + std::string(mode.name) + " has no test of texture");
+    }
+    if (options.window) {
+        if (*options.window <= 0 || *options.window > std::numeric_limits<std::uint8_t>::max()) {
+            refuse_window(mode);
+        }
+        config.window = static_cast<std::uint8_t>(*options.window);
+    }
+    config.texture_min = options.texture ? read_test(*options.texture, "texture_min") : std::uint8_t{0};
+}
+
 tsr_refine_config read_refine(const MatchOptions &options)
 {
     tsr_refine_config config = {};
@@ -136,16 +168,16 @@ void declare_match_options(CLI::App &command, MatchOptions &options)
     command.add_option("left", options.left, "left picture, rectified: PGM, PNG or JPEG")->required();
     command.add_option("right", options.right, "right picture, of the same size")->required();
     command.add_option("--disparities", options.disparities, "searched disparities, px")->required();
-    command.add_option("--window", options.window, "side of the window, px")->capture_default_str();
-    command.add_option("--mode", options.mode, "what is compared")->capture_default_str();
+    command.add_option("--window", options.window, "side of the window, px; 9 unless told, smooth has its own");
+    command.add_option("--mode", options.mode, "sad, sad8, census, smooth, raw or ssd")->capture_default_str();
     command
         .add_option("--refine", options.refine,
                     "filters of the map in order, with commas, or none: median3 median5 speckle fill gaussian3 "
                     "gaussian5 diffusion")
         ->capture_default_str();
     command.add_option("--search-start", options.search_start, "first disparity searched, px")->capture_default_str();
-    command.add_option("--uniqueness", options.uniqueness, "percent, or off")->capture_default_str();
-    command.add_option("--texture", options.texture, "least texture, or off")->capture_default_str();
+    command.add_option("--uniqueness", options.uniqueness, "percent, or off; 15 unless told, in smooth 25, in ssd 30");
+    command.add_option("--texture", options.texture, "least texture, or off, in sad and sad8; 1 unless told");
     command.add_option("--lr", options.lr, "left-right tolerance, px, or off")->capture_default_str();
     command.add_option("--speckle-size", options.speckle_size, "smallest island kept, px")->capture_default_str();
     command.add_option("--speckle-difference", options.speckle_difference_px, "largest step inside an island, px")
@@ -182,15 +214,19 @@ StereoOptions read_match_options(const MatchOptions &options, const ImageSize &s
     stereo.match.width = static_cast<std::uint16_t>(size.width);
     stereo.match.height = static_cast<std::uint16_t>(size.height);
     stereo.match.disparities = narrow<std::uint16_t>(options.disparities, "disparities");
-    stereo.match.window = narrow<std::uint8_t>(options.window, "window");
-    stereo.match.uniqueness_percent = read_test(options.uniqueness, "uniqueness_percent");
-    stereo.match.texture_min = read_test(options.texture, "texture_min");
+    const Mode &mode = find_name(kModes, options.mode, "--mode");
+    read_mode(options, mode, stereo.match);
+    if (options.uniqueness) {
+        stereo.match.uniqueness_percent = read_test(*options.uniqueness, "uniqueness_percent");
+    }
     stereo.match.lr_tolerance_px = read_test(options.lr, "lr_tolerance_px");
     stereo.match.search_start_px =
         static_cast<std::int16_t>(std::clamp(options.search_start, -TSR_IMAGE_WIDTH_MAX, +TSR_IMAGE_WIDTH_MAX));
-    find_name(kModes, options.mode, "--mode").select(stereo.match);
     stereo.refine = read_refine(options);
     if (const std::string field = StereoPipeline::bad_field(stereo); !field.empty()) {
+        if (field == "window") {
+            refuse_window(mode);
+        }
         refuse(field);
     }
     return stereo;

@@ -7,6 +7,7 @@
 #define TSR_TARSIER_MATCH_OPTIONS_H
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,19 +19,19 @@
 namespace tsr
 {
 
-/* As typed. */
+/* As typed; what is not, is the mode's own default. */
 struct MatchOptions {
     std::filesystem::path left;
     std::filesystem::path right;
     std::filesystem::path out;
     std::filesystem::path picture;
     int disparities = 0;
-    int window = 9;
+    std::optional<int> window;
     std::string mode = "sad";
     std::string refine = "median3";
     int search_start = 0;
-    std::string uniqueness = "15";
-    std::string texture = "1";
+    std::optional<std::string> uniqueness;
+    std::optional<std::string> texture;
     std::string lr = "1";
     int speckle_size = 50;
     double speckle_difference_px = 1;

@@ -41,6 +41,8 @@ enum tsr_match_mode {
     TSR_MATCH_SAD8,   /* the same where window^2 * 2 cap <= 255, so windows up to 11: window sums fit 8 bits */
     TSR_MATCH_CENSUS, /* census descriptors over the window: light may differ; docs/math.md, eq. (47) */
     TSR_MATCH_SMOOTH, /* census descriptors along three causal paths; eqs. (42) to (46) */
+    TSR_MATCH_RAW,    /* gray values without prefilter, as the thesis has it; portable only; eq. (23) */
+    TSR_MATCH_SSD,    /* their squared differences, its rival; portable only; eqs. (24), (25) */
 };
 
 /* An implementation of the matcher for one instruction set, see below. */
@@ -55,7 +57,7 @@ struct tsr_match_config {
     uint8_t mode;               /* enum tsr_match_mode; default TSR_MATCH_SAD */
     uint8_t prefilter_cap;      /* 1 .. 7, <= 63 / window (2 cap window <= 127), with SAD8 <= 127 / window^2; default
                                    the largest */
-    uint8_t uniqueness_percent; /* 1 .. 100, or off; default 15, in smooth 25 */
+    uint8_t uniqueness_percent; /* 1 .. 100, or off; default 15, in smooth 25, in ssd 30 */
     uint8_t texture_min;        /* least sum of |P_left - cap| over the window, in units of window px, 1 .. 127, or
                                    off; default 1 */
     uint8_t lr_tolerance_px;    /* 1 .. 127, or off; default 1 */

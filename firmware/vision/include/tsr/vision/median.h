@@ -4,9 +4,9 @@
  *   out(x,y) = lower median of the valid values      docs/math.md, eqs. (18), (80)
  *              among the neighbours inside the map
  *
- * A pixel is valid afterwards if enough of its (up to window^2) neighbours,
- * itself included, were valid before: ((window + 1) / 2)^2 of them, which is
- * what a corner of the map has. Specks vanish, pinholes close. Of n values in
+ * A pixel is valid afterwards if enough of its neighbours, itself included, were
+ * valid before: 4 of 3x3 (what a corner of the map has), more than half of those
+ * of 5x5 that lie inside the map. Specks vanish, pinholes close. Of n values in
  * ascending order the lower median is the one at (n - 1) / 2.
  *
  * SPDX-License-Identifier: Apache-2.0
