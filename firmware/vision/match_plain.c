@@ -1,19 +1,11 @@
 /*
- * The plain modes of the matcher: their scratch, the order of their rows, and the
- * choice of a pixel from 32-bit sums.
+ * The plain modes of the matcher: their scratch and the order of their rows.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
 #include "match_plain.h"
 
 #include <string.h>
-
-/* The disparities a pixel can search, lowest .. highest, and the best of them. */
-struct winner {
-    int lowest;
-    int highest;
-    int d;
-};
 
 bool tsr_match_is_plain(uint8_t mode)
 {
@@ -41,7 +33,7 @@ struct tsr_match_plain_scratch tsr_match_share_plain(const struct tsr_match *mat
     struct tsr_match_scratch common = tsr_match_share_scratch(match);
     size_t width = match->config.width;
     struct tsr_match_plain_scratch scratch;
-    scratch.sums = (uint32_t *)(void *)common.sums;
+    scratch.sums = common.sums;
     scratch.claims_wide = (uint32_t *)(void *)(common.columns + columns_alone_len(&match->config));
     scratch.claims = common.claims;
     scratch.choices = common.choices;
@@ -59,68 +51,6 @@ void tsr_match_mirror_row(const struct tsr_match *match, unsigned y, unsigned wh
     for (int k = 0; k < count; k++) {
         int column = last - match->config.search_start_px - k;
         met[k] = right[column < 0 ? 0 : column < last ? column : last];
-    }
-}
-
-/* docs/math.md, eq. (14). */
-static struct winner find_winner(const struct tsr_match_config *config, const uint32_t *sums, unsigned x)
-{
-    int lane_of_first = (int)x - config->search_start_px;
-    int lowest = lane_of_first - (config->width - 1);
-    struct winner winner = {lowest > 0 ? lowest : 0, config->disparities - 1, 0};
-    winner.highest = lane_of_first < winner.highest ? lane_of_first : winner.highest;
-    winner.d = winner.lowest;
-    for (int d = winner.lowest + 1; d <= winner.highest; d++) {
-        winner.d = sums[d] < sums[winner.d] ? d : winner.d;
-    }
-    return winner;
-}
-
-/* docs/math.md, eq. (15). */
-static bool is_unique(const struct tsr_match_config *config, const uint32_t *sums, struct winner winner)
-{
-    if (config->uniqueness_percent == TSR_MATCH_TEST_OFF) {
-        return true;
-    }
-    uint32_t limit = sums[winner.d] * (100u + config->uniqueness_percent) / 100u;
-    bool unique = true;
-    for (int d = winner.lowest; d <= winner.highest; d++) {
-        bool own = d >= winner.d - 1 && d <= winner.d + 1;
-        unique = unique && (own || sums[d] > limit);
-    }
-    return unique;
-}
-
-/* docs/math.md, eq. (16), or (25) of a parabola; both have a form with one divisor that is not 0. */
-static int find_offset_q4(const struct tsr_match_config *config, const uint32_t *sums, struct winner winner)
-{
-    if (winner.d <= winner.lowest || winner.d >= winner.highest) {
-        return 0;
-    }
-    uint32_t least = sums[winner.d];
-    uint32_t below = sums[winner.d - 1] - least;
-    uint32_t above = sums[winner.d + 1] - least;
-    uint32_t larger = below > above ? below : above;
-    uint32_t divisor = config->mode == TSR_MATCH_SSD ? below + above : larger;
-    uint32_t lean = below > above ? below - above : above - below;
-    int offset_q4 = (int)((16u * lean + divisor) / (2u * divisor));
-    return below > above ? offset_q4 : -offset_q4;
-}
-
-void tsr_match_choose_plain(const struct tsr_match *match, unsigned x)
-{
-    const struct tsr_match_config *config = &match->config;
-    const struct tsr_match_plain_scratch scratch = tsr_match_share_plain(match);
-    struct winner winner = find_winner(config, scratch.sums, x);
-    scratch.choices[x] = TSR_MATCH_CHOICE_NONE;
-    if (winner.lowest > winner.highest) {
-        return;
-    }
-    uint32_t *claimed = scratch.claims_wide + ((int)x - config->search_start_px - winner.d);
-    uint32_t claim = scratch.sums[winner.d] << 7 | (uint32_t)winner.d;
-    *claimed = claim < *claimed ? claim : *claimed;
-    if (is_unique(config, scratch.sums, winner)) {
-        scratch.choices[x] = TSR_MATCH_CHOICE(winner.d, find_offset_q4(config, scratch.sums, winner));
     }
 }
 

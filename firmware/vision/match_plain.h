@@ -7,7 +7,7 @@
  *               r .. H + r - 1    map rows 0 .. H - 1
  *
  * The frames are only read. Of the scratch of match_stages.h, sums and offered
- * are one array uint32_t [D], and columns is followed by
+ * are one array of the mode's window sums [D], and columns is followed by
  *
  *   claims_wide   uint32_t [W]   claims with the whole least sum
  *
@@ -28,7 +28,7 @@
 #define TSR_MATCH_SSD_SUM_LEN 4u
 
 struct tsr_match_plain_scratch {
-    uint32_t *sums;
+    void *sums; /* of window_sum, match_plain_sums.h */
     uint32_t *claims_wide;
     uint16_t *claims;
     uint16_t *choices;
@@ -47,8 +47,6 @@ void tsr_match_plain_step(const struct tsr_match *match, unsigned step);
 
 /* The right row y as entry which of met. */
 void tsr_match_mirror_row(const struct tsr_match *match, unsigned y, unsigned which);
-/* The choice of pixel x from the sums. */
-void tsr_match_choose_plain(const struct tsr_match *match, unsigned x);
 
 /* Column and window sums of one mode: columns += times the row in met[0]; row y of choices from columns that also lose
  * the row in met[1]. */

@@ -1,13 +1,15 @@
 /*
  * Column and window sums of a plain mode. Included once by each, after
  *
- *   column_sum    the type of a column sum
- *   term(a, b)    what two gray values cost
- *   PLAIN_SUMS    the name of the struct tsr_match_plain_sums
+ *   column_sum, window_sum   types that hold the sums
+ *   term(a, b)               what two gray values cost
+ *   offset_divisor(a, b)     of the offset; a, b: how much the sums beside the least exceed it
+ *   PLAIN_SUMS               the name of the struct tsr_match_plain_sums
  *
  * SPDX-License-Identifier: Apache-2.0
  */
 #include "match_plain.h"
+#include "match_plain_choose.h"
 
 static column_sum *columns_at(const struct tsr_match *match, unsigned x)
 {
@@ -50,22 +52,22 @@ static void move_columns(const struct tsr_match *match, unsigned y_new, unsigned
     }
 }
 
-static void move_sums(uint32_t *restrict sums, const column_sum *restrict enter, const column_sum *restrict leave,
+static void move_sums(window_sum *restrict sums, const column_sum *restrict enter, const column_sum *restrict leave,
                       unsigned disparities)
 {
     for (unsigned d = 0; d < disparities; d++) {
-        sums[d] += (uint32_t)enter[d] - (uint32_t)leave[d];
+        sums[d] = (window_sum)(sums[d] + enter[d] - leave[d]);
     }
 }
 
 /* The window one column left of the image holds column 0 r + 2 times and columns 1 .. r - 1 once, so that moving it to
  * x = 0 is a step like every other. */
-static void begin_window(const struct tsr_match *match, uint32_t *sums, unsigned radius)
+static void begin_window(const struct tsr_match *match, window_sum *sums, unsigned radius)
 {
     for (unsigned d = 0; d < match->config.disparities; d++) {
-        sums[d] = (radius + 2u) * columns_at(match, 0)[d];
+        sums[d] = (window_sum)((radius + 2u) * columns_at(match, 0)[d]);
         for (unsigned x = 1; x < radius; x++) {
-            sums[d] += columns_at(match, x)[d];
+            sums[d] = (window_sum)(sums[d] + columns_at(match, x)[d]);
         }
     }
 }
@@ -74,14 +76,14 @@ static void choose_row(const struct tsr_match *match, unsigned y_new, unsigned y
 {
     unsigned last = match->config.width - 1u;
     unsigned radius = match->config.window / 2u;
-    uint32_t *sums = tsr_match_share_plain(match).sums;
+    window_sum *sums = tsr_match_share_plain(match).sums;
     move_columns(match, y_new, y_old);
     begin_window(match, sums, radius);
     for (unsigned x = 0; x <= last; x++) {
         unsigned enter = x + radius < last ? x + radius : last;
         unsigned leave = x > radius ? x - radius - 1u : 0u;
         move_sums(sums, columns_at(match, enter), columns_at(match, leave), match->config.disparities);
-        tsr_match_choose_plain(match, x);
+        choose(match, x);
     }
 }
 
