@@ -135,18 +135,32 @@ enum tsr_status tsr_match_check(const struct tsr_match_config *config, const cha
     return bad == NULL ? TSR_OK : TSR_ERR_ARG;
 }
 
+/* Bytes of the scratch's columns and what the mode keeps with them, and of what it keeps behind all. */
+static size_t columns_len(const struct tsr_match_config *config)
+{
+    if (tsr_match_is_plain(config->mode)) {
+        return tsr_match_plain_columns_len(config);
+    }
+    return is_census(config) ? tsr_match_census_columns_len(config) : (size_t)config->width * config->disparities;
+}
+
+static size_t behind_len(const struct tsr_match_config *config)
+{
+    if (tsr_match_is_plain(config->mode)) {
+        return tsr_match_plain_met_len(config);
+    }
+    return is_census(config) ? tsr_match_census_planes_len(config) : 0u;
+}
+
 size_t tsr_match_scratch_len(const struct tsr_match_config *config)
 {
     if (tsr_match_check(config, NULL) != TSR_OK) {
         return 0;
     }
     struct tsr_match_config resolved = resolve(config);
-    size_t common = TSR_MATCH_SCRATCH_LEN(resolved.width, resolved.disparities);
-    size_t columns_len = (size_t)resolved.width * resolved.disparities;
-    if (tsr_match_is_plain(resolved.mode)) {
-        return common - columns_len + tsr_match_plain_columns_len(&resolved) + tsr_match_plain_met_len(&resolved);
-    }
-    return is_census(&resolved) ? common + tsr_match_census_scratch_len(&resolved) : common;
+    size_t width_by_disparities = (size_t)resolved.width * resolved.disparities;
+    return TSR_MATCH_SCRATCH_LEN(resolved.width, resolved.disparities) - width_by_disparities + columns_len(&resolved) +
+           behind_len(&resolved);
 }
 
 size_t tsr_match_pair_len(const struct tsr_match_config *config)
@@ -192,10 +206,7 @@ struct tsr_match_scratch tsr_match_share_scratch(const struct tsr_match *match)
     scratch.sums = (int16_t *)(void *)match->scratch;
     scratch.offered = scratch.sums + disparities;
     scratch.columns = (uint8_t *)(scratch.offered + disparities) + TSR_MATCH_EDGE_ROOM;
-    size_t rows = match->config.mode == TSR_MATCH_SMOOTH ? TSR_MATCH_SMOOTH_ROWS : 1u;
-    size_t columns_len = tsr_match_is_plain(match->config.mode) ? tsr_match_plain_columns_len(&match->config)
-                                                                : rows * width * disparities;
-    scratch.claims = (uint16_t *)(void *)(scratch.columns + columns_len);
+    scratch.claims = (uint16_t *)(void *)(scratch.columns + columns_len(&match->config));
     scratch.choices = scratch.claims + width;
     scratch.texture = (uint8_t *)(scratch.choices + width);
     return scratch;

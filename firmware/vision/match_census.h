@@ -6,15 +6,19 @@
  *               r .. H + r - 1    map rows 0 .. H - 1
  *
  * with r the radius of the box that is summed: window / 2, or 1 in smooth. The
- * frames are only read. Behind the scratch of match_stages.h, in this order:
+ * frames are only read. In smooth the columns of the scratch of match_stages.h are
+ * followed by what is read in words, so that it is aligned as they are:
+ *
+ *   above       uint8_t [2][W][D] path costs of the row above: up, up-right
+ *   before      uint8_t [D]       path costs of the pixel to the left
+ *   cost        uint8_t [D]       B(x,y,.) of one pixel
+ *
+ * and behind the whole scratch are
  *
  *   planes      rows of descriptors, row y in y mod their number: 2 r + 2 in census, 1 in smooth; each
  *                 left   uint8_t [2][W]       planes 0 and 1
  *                 right  uint8_t [2][W + D]   mirrored, see below
- *   above       uint8_t [2][W][D] path costs of the row above: up, up-right   (smooth)
- *   least       uint8_t [2][W]    their minima over d                         (smooth)
- *   before      uint8_t [D]       path costs of the pixel to the left         (smooth)
- *   cost        uint8_t [D]       B(x,y,.) of one pixel                       (smooth)
+ *   least       uint8_t [2][W]    the least of above over d                   (smooth)
  *
  * A right plane holds at W - 1 - x + d the descriptor that (x,d) is compared
  * with, so ascending d reads ascending addresses and no border is a case.
@@ -51,8 +55,9 @@ struct tsr_match_paths {
     uint8_t *cost;
 };
 
-/* Bytes behind the common scratch, of a resolved configuration. */
-size_t tsr_match_census_scratch_len(const struct tsr_match_config *config);
+/* Bytes of columns and what follows them, and of what is behind the common scratch, of a resolved configuration. */
+size_t tsr_match_census_columns_len(const struct tsr_match_config *config);
+size_t tsr_match_census_planes_len(const struct tsr_match_config *config);
 unsigned tsr_match_census_rows_total(const struct tsr_match_config *config);
 unsigned tsr_match_census_radius(const struct tsr_match_config *config);
 

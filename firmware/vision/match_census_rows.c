@@ -32,16 +32,15 @@ static size_t plane_row_len(const struct tsr_match_config *config)
     return TSR_MATCH_CENSUS_PLANES * (2u * (size_t)config->width + config->disparities);
 }
 
-size_t tsr_match_census_scratch_len(const struct tsr_match_config *config)
+size_t tsr_match_census_columns_len(const struct tsr_match_config *config)
 {
-    size_t width = config->width;
-    size_t disparities = config->disparities;
-    size_t len = plane_row_len(config) * plane_rows(config);
-    if (has_paths(config)) {
-        len += (TSR_MATCH_SMOOTH_ROWS - 1u) * width * disparities; /* the common scratch has one row of [W][D] */
-        len += 2u * width * disparities + 2u * width + 2u * disparities;
-    }
-    return len;
+    size_t row_len = (size_t)config->width * config->disparities;
+    return has_paths(config) ? (TSR_MATCH_SMOOTH_ROWS + 2u) * row_len + 2u * (size_t)config->disparities : row_len;
+}
+
+size_t tsr_match_census_planes_len(const struct tsr_match_config *config)
+{
+    return plane_row_len(config) * plane_rows(config) + (has_paths(config) ? 2u * (size_t)config->width : 0u);
 }
 
 static uint8_t *behind_common(const struct tsr_match *match)
@@ -62,13 +61,14 @@ struct tsr_match_paths tsr_match_share_paths(const struct tsr_match *match)
 {
     size_t width = match->config.width;
     size_t disparities = match->config.disparities;
+    size_t row_len = width * disparities;
     struct tsr_match_paths paths;
-    paths.above[0] = behind_common(match) + plane_row_len(&match->config) * plane_rows(&match->config);
-    paths.above[1] = paths.above[0] + width * disparities;
-    paths.least[0] = paths.above[1] + width * disparities;
-    paths.least[1] = paths.least[0] + width;
-    paths.before = paths.least[1] + width;
+    paths.above[0] = tsr_match_share_scratch(match).columns + TSR_MATCH_SMOOTH_ROWS * row_len;
+    paths.above[1] = paths.above[0] + row_len;
+    paths.before = paths.above[1] + row_len;
     paths.cost = paths.before + disparities;
+    paths.least[0] = behind_common(match) + plane_row_len(&match->config) * plane_rows(&match->config);
+    paths.least[1] = paths.least[0] + width;
     return paths;
 }
 

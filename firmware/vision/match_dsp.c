@@ -364,6 +364,10 @@ const struct tsr_match_kernel tsr_match_kernel_dsp = {
     .prefilter_row = tsr_dsp_prefilter_row,
     .add_row = tsr_dsp_add_row,
     .match_row = match_row,
-    TSR_MATCH_PORTABLE_CENSUS,
+    .describe_row = tsr_dsp_describe_row,
+    .add_census = tsr_dsp_add_census,
+    .census_row = tsr_dsp_census_row,
+    .cost_row = tsr_dsp_cost_row,
+    .smooth_row = tsr_dsp_smooth_row,
 };
 #endif

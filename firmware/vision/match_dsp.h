@@ -8,7 +8,7 @@
 #ifndef TSR_VISION_MATCH_DSP_H
 #define TSR_VISION_MATCH_DSP_H
 
-#include "match_stages.h"
+#include "match_census.h"
 
 static inline uint32_t tsr_dsp_load(const uint8_t *at)
 {
@@ -82,5 +82,34 @@ const void *tsr_dsp_entry(unsigned groups);
 
 void tsr_dsp_prefilter_row(const struct tsr_match *match, unsigned y);
 void tsr_dsp_add_row(const struct tsr_match *match, unsigned y, unsigned times);
+
+/*
+ * One path over the lanes of a pixel: docs/math.md, eq. (44).
+ *
+ *   source, cost   path costs of the pixel before, B of this pixel. Three bytes behind source are read and not used
+ *   path           may be source
+ *   jump, least    least of source with and without the penalty of a jump, in every byte
+ *   last           source's last word
+ *
+ * tsr_dsp_walk returns the least of path in four lanes. tsr_dsp_walk_last also replaces cost by its sums with two other
+ * paths, eq. (46), whose least in four lanes is the high word.
+ */
+struct tsr_dsp_walk {
+    const uint32_t *source;
+    uint32_t *cost;
+    uint32_t *path;
+    uint32_t reserved;
+    uint32_t jump;
+    uint32_t least;
+    const uint32_t *last;
+};
+uint32_t tsr_dsp_walk(const struct tsr_dsp_walk *walk);
+uint64_t tsr_dsp_walk_last(const struct tsr_dsp_walk *walk, const uint32_t *first, const uint32_t *second);
+
+void tsr_dsp_describe_row(const struct tsr_match *match, unsigned y);
+void tsr_dsp_add_census(const struct tsr_match *match, unsigned y, unsigned times);
+void tsr_dsp_census_row(const struct tsr_match *match, unsigned y, unsigned y_new, unsigned y_old);
+void tsr_dsp_cost_row(const struct tsr_match *match, unsigned y);
+void tsr_dsp_smooth_row(const struct tsr_match *match, unsigned y);
 
 #endif

@@ -4,7 +4,7 @@
  *   sums      int16_t [D]     S(x,y,.) of one pixel
  *   offered   int16_t [D]     the same with what the pixel cannot search masked
  *   columns   uint8_t [W][D]  column sums of A or C, see tsr_match_add_row(); in smooth the costs C of
- *                             three rows, [3][W][D], row y in y mod 3
+ *                             three rows, [3][W][D], row y in y mod 3, and more
  *   claims    uint16_t [W]    of every right pixel the least claim of a left pixel, TSR_MATCH_CLAIM()
  *   choices   uint16_t [W]    what every left pixel of the row chose, TSR_MATCH_CHOICE()
  *   texture   uint8_t [W]     column sums of |P_left - cap|

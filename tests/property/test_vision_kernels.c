@@ -18,7 +18,7 @@
 #define GUARD 64
 #define GUARD_BYTE 0xa5
 #define FRAME_LEN (STRIDE_MAX * HEIGHT_MAX)
-#define SCRATCH_MAX TSR_MATCH_SCRATCH_LEN(WIDTH_MAX, TSR_DISPARITY_COUNT_MAX)
+#define SCRATCH_MAX (6u * TSR_MATCH_SCRATCH_LEN(WIDTH_MAX, TSR_DISPARITY_COUNT_MAX)) /* of smooth */
 
 static uint64_t state;
 static uint8_t scene[2][WIDTH_MAX * HEIGHT_MAX];
@@ -222,8 +222,9 @@ static void sweep(unsigned mode, unsigned window_max)
             if (below(6) == 0) {
                 width = disparities; /* all border */
             }
+            unsigned height_min = mode == TSR_MATCH_SMOOTH && window < 7u ? 7u : window;
             struct tsr_match_config config = {.width = (uint16_t)width,
-                                              .height = (uint16_t)(window + below(HEIGHT_MAX - window + 1u)),
+                                              .height = (uint16_t)(height_min + below(HEIGHT_MAX - height_min + 1u)),
                                               .disparities = (uint16_t)disparities,
                                               .window = (uint8_t)window,
                                               .mode = (uint8_t)mode};
@@ -244,6 +245,16 @@ static void test_sad_is_the_portable_one(void)
 static void test_sad8_is_the_portable_one(void)
 {
     sweep(TSR_MATCH_SAD8, 11);
+}
+
+static void test_census_is_the_portable_one(void)
+{
+    sweep(TSR_MATCH_CENSUS, 15);
+}
+
+static void test_smooth_is_the_portable_one(void)
+{
+    sweep(TSR_MATCH_SMOOTH, 15);
 }
 
 static void test_common_sizes(void)
@@ -274,5 +285,7 @@ int main(void)
     RUN_TEST(test_common_sizes);
     RUN_TEST(test_sad_is_the_portable_one);
     RUN_TEST(test_sad8_is_the_portable_one);
+    RUN_TEST(test_census_is_the_portable_one);
+    RUN_TEST(test_smooth_is_the_portable_one);
     return UNITY_END();
 }
