@@ -27,6 +27,9 @@ static const struct {
     const struct tsr_match_kernel *kernel;
     bool (*is_supported)(void);
 } kernels[] = {
+#if defined(TSR_MATCH_HAS_MVE)
+    {&tsr_match_kernel_mve, NULL},
+#endif
 #if defined(TSR_MATCH_HAS_DSP)
     {&tsr_match_kernel_dsp, NULL},
 #endif

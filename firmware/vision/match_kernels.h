@@ -10,6 +10,12 @@
 
 #include "match_stages.h"
 
+/* Cortex-M55, M85: the vector extension with integers, and low-overhead loops (ARMv8-M ARM, B5.6, B3.28). */
+#if defined(__ARM_FEATURE_MVE)
+#define TSR_MATCH_HAS_MVE
+extern const struct tsr_match_kernel tsr_match_kernel_mve;
+#endif
+
 /* Cortex-M4, M7, M33: the DSP extension's parallel arithmetic (ARMv7-M ARM, A4.4.3), in Thumb state. */
 #if defined(__ARM_FEATURE_SIMD32) && defined(__thumb2__) && !defined(__ARM_ARCH_7A__)
 #define TSR_MATCH_HAS_DSP

@@ -1,0 +1,159 @@
+/*
+ * Rows of the matcher without a window, with MVE: prefilter, warm-up, texture,
+ * and the map from the choices. The last vector of a row is predicated.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include "match_kernels.h"
+
+#ifdef TSR_MATCH_HAS_MVE
+
+#include <arm_mve.h>
+#include <string.h>
+
+#include "match_mve.h"
+
+#define BYTES 16u /* lanes of a vector */
+#define HALVES 8u
+
+/* The three rows around y: those above and at y as copies in kept, [2][width], which goes from row to row. */
+static void gather_rows(const struct tsr_gray *frame, unsigned y, uint8_t *kept, const uint8_t *rows[3])
+{
+    const uint8_t *row = frame->pixels + (size_t)y * frame->stride;
+    uint8_t *copy = kept + (y & 1u) * frame->width;
+    memcpy(copy, row, frame->width);
+    rows[0] = y > 0 ? kept + ((y - 1u) & 1u) * frame->width : copy;
+    rows[1] = copy;
+    rows[2] = y + 1u < frame->height ? row + frame->stride : copy;
+}
+
+/* Eight pixels of a row, times 1, less those two to their left. */
+static inline int16x8_t differ(const uint8_t *left, mve_pred16_t lanes)
+{
+    return vreinterpretq_s16_u16(vsubq_u16(vldrbq_z_u16(left + 2, lanes), vldrbq_z_u16(left, lanes)));
+}
+
+/* One pixel, with the columns beside it. */
+static uint8_t derive_pixel(const uint8_t *const rows[3], unsigned left, unsigned right, int cap)
+{
+    int sum = rows[0][right] + 2 * rows[1][right] + rows[2][right] - rows[0][left] - 2 * rows[1][left] - rows[2][left];
+    int value = (sum + 2) >> 2;
+    value = value < -cap ? -cap : value;
+    return (uint8_t)((value > cap ? cap : value) + cap);
+}
+
+/* Row y of a frame in place: eq. (10). The mirrored one is scattered. */
+static inline __attribute__((always_inline)) void filter_row(const struct tsr_gray *frame, unsigned y, uint8_t *kept,
+                                                             int cap, bool mirror)
+{
+    const uint8_t *rows[3];
+    gather_rows(frame, y, kept, rows);
+    unsigned last = frame->width - 1u;
+    uint8_t *row = frame->pixels + (size_t)y * frame->stride;
+    int16x8_t highest = vdupq_n_s16((int16_t)cap);
+    int16x8_t lowest = vdupq_n_s16((int16_t)-cap);
+    uint16x8_t places = vsubq_u16(vdupq_n_u16((uint16_t)(last - 1u)), vidupq_n_u16(0, 1));
+    for (unsigned x = 1; x < last; x += HALVES) {
+        mve_pred16_t lanes = vctp16q(last - x);
+        int16x8_t middle = differ(rows[1] + x - 1u, lanes);
+        int16x8_t sum = vaddq_s16(differ(rows[0] + x - 1u, lanes), differ(rows[2] + x - 1u, lanes));
+        sum = vrshrq_n_s16(vaddq_s16(vaddq_s16(sum, middle), middle), 2);
+        sum = vaddq_s16(vmaxq_s16(vminq_s16(sum, highest), lowest), highest);
+        if (mirror) {
+            vstrbq_scatter_offset_p_s16((int8_t *)row, places, sum, lanes);
+            places = vsubq_n_u16(places, HALVES);
+        } else {
+            vstrbq_p_s16((int8_t *)row + x, sum, lanes);
+        }
+    }
+    row[mirror ? last : 0] = derive_pixel(rows, 0, 1, cap);
+    row[mirror ? 0 : last] = derive_pixel(rows, last - 1u, last, cap);
+}
+
+void tsr_mve_prefilter_row(const struct tsr_match *match, unsigned y)
+{
+    uint8_t *kept = tsr_match_share_scratch(match).columns;
+    int cap = match->config.prefilter_cap;
+    filter_row(&match->left, y, kept, cap, false);
+    filter_row(&match->right, y, kept + 2u * match->config.width, cap, true);
+}
+
+/* Lanes whose right pixel lies left of the picture take its first one, at lane `limit`: eq. (11). */
+static void add_column(uint8_t *column, unsigned disparities, unsigned times, uint8_t left, const uint8_t *right,
+                       unsigned limit)
+{
+    uint8x16_t pixel = vdupq_n_u8(left);
+    uint8x16_t limits = vdupq_n_u8((uint8_t)limit);
+    for (unsigned d = 0; d < disparities; d += BYTES) {
+        mve_pred16_t lanes = vctp8q(disparities - d);
+        uint8x16_t offsets = vminq_u8(vidupq_n_u8(d, 1), limits);
+        uint8x16_t difference = vabdq_u8(pixel, vldrbq_gather_offset_z_u8(right, offsets, lanes));
+        uint8x16_t sums = vmlaq_n_u8(vldrbq_z_u8(column + d, lanes), difference, (uint8_t)times);
+        vstrbq_p_u8(column + d, sums, lanes);
+    }
+}
+
+void tsr_mve_add_row(const struct tsr_match *match, unsigned y, unsigned times)
+{
+    const struct tsr_match_config *config = &match->config;
+    struct tsr_match_scratch scratch = tsr_match_share_scratch(match);
+    unsigned start = (unsigned)config->search_start_px;
+    unsigned disparities = config->disparities;
+    const uint8_t *left = match->left.pixels + (size_t)y * match->left.stride;
+    const uint8_t *right = match->right.pixels + (size_t)y * match->right.stride + (config->width - 1u);
+    for (unsigned x = 0; x < config->width; x++) {
+        unsigned lane_of_first = x > start ? x - start : 0u; /* the d whose right pixel is 0 */
+        unsigned limit = lane_of_first < disparities ? lane_of_first : disparities - 1u;
+        add_column(scratch.columns + (size_t)x * disparities, disparities, times, left[x], right - lane_of_first,
+                   limit);
+    }
+    for (unsigned x = 0; x < config->width; x += BYTES) {
+        mve_pred16_t lanes = vctp8q(config->width - x);
+        uint8x16_t difference = vabdq_u8(vldrbq_z_u8(left + x, lanes), vdupq_n_u8(config->prefilter_cap));
+        uint8x16_t sums = vmlaq_n_u8(vldrbq_z_u8(scratch.texture + x, lanes), difference, (uint8_t)times);
+        vstrbq_p_u8(scratch.texture + x, sums, lanes);
+    }
+}
+
+void tsr_mve_move_texture(const struct tsr_match *match, unsigned y_new, unsigned y_old)
+{
+    unsigned width = match->config.width;
+    const uint8_t *new_row = match->left.pixels + (size_t)y_new * match->left.stride;
+    const uint8_t *old_row = match->left.pixels + (size_t)y_old * match->left.stride;
+    uint8_t *texture = tsr_match_share_scratch(match).texture;
+    uint8x16_t cap = vdupq_n_u8(match->config.prefilter_cap);
+    for (unsigned x = 0; x < width; x += BYTES) {
+        mve_pred16_t lanes = vctp8q(width - x);
+        uint8x16_t added = vabdq_u8(vldrbq_z_u8(new_row + x, lanes), cap);
+        uint8x16_t taken = vabdq_u8(vldrbq_z_u8(old_row + x, lanes), cap);
+        uint8x16_t sums = vsubq_u8(vaddq_u8(vldrbq_z_u8(texture + x, lanes), added), taken);
+        vstrbq_p_u8(texture + x, sums, lanes);
+    }
+}
+
+/* docs/math.md, eq. (17): the choices that agree with the claims. */
+void tsr_mve_write_row(const struct tsr_match *match, unsigned y)
+{
+    const struct tsr_match_config *config = &match->config;
+    struct tsr_match_scratch scratch = tsr_match_share_scratch(match);
+    uint16_t *map_row = match->map + (size_t)y * config->width;
+    bool off = config->lr_tolerance_px == TSR_MATCH_TEST_OFF;
+    uint16_t tolerance = off ? TSR_DISPARITY_COUNT_MAX : config->lr_tolerance_px;
+    uint16x8_t reach = vdupq_n_u16((uint16_t)(2u * tolerance));
+    uint16x8_t places = vsubq_n_u16(vidupq_n_u16(0, 1), (uint16_t)config->search_start_px); /* of x - s */
+    for (unsigned x = 0; x < config->width; x += HALVES) {
+        mve_pred16_t lanes = vctp16q(config->width - x);
+        uint16x8_t choices = vldrhq_z_u16(scratch.choices + x, lanes);
+        mve_pred16_t valid = vcmpneq_m_n_u16(choices, TSR_MATCH_CHOICE_NONE, lanes);
+        uint16x8_t disparities = vshrq_n_u16(choices, 5);
+        uint16x8_t claims = vldrhq_gather_shifted_offset_z_u16(scratch.claims, vsubq_u16(places, disparities), valid);
+        uint16x8_t claimed = vandq_u16(claims, vdupq_n_u16(TSR_MATCH_CLAIM_D(UINT16_MAX)));
+        uint16x8_t apart = vaddq_n_u16(vsubq_u16(claimed, disparities), tolerance);
+        valid = vcmpcsq_m_u16(reach, apart, valid);
+        /* 32 d + offset + 8 becomes 16 d + offset */
+        uint16x8_t values = vsubq_n_u16(vsubq_u16(choices, vshlq_n_u16(disparities, 4)), 8);
+        vstrhq_p_u16(map_row + x, vpselq_u16(values, vdupq_n_u16(TSR_DISPARITY_INVALID), valid), lanes);
+        places = vaddq_n_u16(places, HALVES);
+    }
+}
+#endif
