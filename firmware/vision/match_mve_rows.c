@@ -114,46 +114,4 @@ void tsr_mve_add_row(const struct tsr_match *match, unsigned y, unsigned times)
         vstrbq_p_u8(scratch.texture + x, sums, lanes);
     }
 }
-
-void tsr_mve_move_texture(const struct tsr_match *match, unsigned y_new, unsigned y_old)
-{
-    unsigned width = match->config.width;
-    const uint8_t *new_row = match->left.pixels + (size_t)y_new * match->left.stride;
-    const uint8_t *old_row = match->left.pixels + (size_t)y_old * match->left.stride;
-    uint8_t *texture = tsr_match_share_scratch(match).texture;
-    uint8x16_t cap = vdupq_n_u8(match->config.prefilter_cap);
-    for (unsigned x = 0; x < width; x += BYTES) {
-        mve_pred16_t lanes = vctp8q(width - x);
-        uint8x16_t added = vabdq_u8(vldrbq_z_u8(new_row + x, lanes), cap);
-        uint8x16_t taken = vabdq_u8(vldrbq_z_u8(old_row + x, lanes), cap);
-        uint8x16_t sums = vsubq_u8(vaddq_u8(vldrbq_z_u8(texture + x, lanes), added), taken);
-        vstrbq_p_u8(texture + x, sums, lanes);
-    }
-}
-
-/* docs/math.md, eq. (17): the choices that agree with the claims. */
-void tsr_mve_write_row(const struct tsr_match *match, unsigned y)
-{
-    const struct tsr_match_config *config = &match->config;
-    struct tsr_match_scratch scratch = tsr_match_share_scratch(match);
-    uint16_t *map_row = match->map + (size_t)y * config->width;
-    bool off = config->lr_tolerance_px == TSR_MATCH_TEST_OFF;
-    uint16_t tolerance = off ? TSR_DISPARITY_COUNT_MAX : config->lr_tolerance_px;
-    uint16x8_t reach = vdupq_n_u16((uint16_t)(2u * tolerance));
-    uint16x8_t places = vsubq_n_u16(vidupq_n_u16(0, 1), (uint16_t)config->search_start_px); /* of x - s */
-    for (unsigned x = 0; x < config->width; x += HALVES) {
-        mve_pred16_t lanes = vctp16q(config->width - x);
-        uint16x8_t choices = vldrhq_z_u16(scratch.choices + x, lanes);
-        mve_pred16_t valid = vcmpneq_m_n_u16(choices, TSR_MATCH_CHOICE_NONE, lanes);
-        uint16x8_t disparities = vshrq_n_u16(choices, 5);
-        uint16x8_t claims = vldrhq_gather_shifted_offset_z_u16(scratch.claims, vsubq_u16(places, disparities), valid);
-        uint16x8_t claimed = vandq_u16(claims, vdupq_n_u16(TSR_MATCH_CLAIM_D(UINT16_MAX)));
-        uint16x8_t apart = vaddq_n_u16(vsubq_u16(claimed, disparities), tolerance);
-        valid = vcmpcsq_m_u16(reach, apart, valid);
-        /* 32 d + offset + 8 becomes 16 d + offset */
-        uint16x8_t values = vsubq_n_u16(vsubq_u16(choices, vshlq_n_u16(disparities, 4)), 8);
-        vstrhq_p_u16(map_row + x, vpselq_u16(values, vdupq_n_u16(TSR_DISPARITY_INVALID), valid), lanes);
-        places = vaddq_n_u16(places, HALVES);
-    }
-}
 #endif

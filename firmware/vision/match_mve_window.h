@@ -23,7 +23,10 @@
 #ifndef TSR_VISION_MATCH_MVE_WINDOW_H
 #define TSR_VISION_MATCH_MVE_WINDOW_H
 
+#include <stddef.h>
 #include <stdint.h>
+
+#include "match_stages.h"
 
 #define MVE_GROUP 16u
 #define MVE_PAD 8u
@@ -31,111 +34,132 @@
 #define MVE_KEY_BARRED 0x8000u
 _Static_assert(TSR_DISPARITY_COUNT_MAX / MVE_GROUP <= 1u << MVE_KEY_SHIFT, "a group's number fits below the sum");
 
-/* A column and where it meets the right rows: all pointers to lane 0. */
-struct mve_step {
+/*
+ * Before a step the pointers are those of the column before; a step moves them
+ * by one column. right_new and right_old point to lane 0's pixel of mirrored
+ * rows. The order is that of the registers that the steps load.
+ */
+struct mve_window {
+    const uint8_t *left_new;
+    const uint8_t *left_old;
     const uint8_t *right_new;
     const uint8_t *right_old;
     uint8_t *column;
     const uint8_t *leave;
-    unsigned left_new;
-    unsigned left_old;
+    void *even; /* or all 8-bit sums */
+    uint16_t *odd;
+    uint32_t lanes; /* D, from column to column */
+    uint32_t limit; /* lanes above it meet the pixel of this one, where a step asks */
 };
+_Static_assert(sizeof(struct mve_window) == 10 * sizeof(uint32_t), "words, as the steps load them");
 
 /* clang-format off */
-#define MVE_BEGIN                     \
-    "vdup.8 q4, %[left_new]\n\t"      \
-    "vdup.8 q5, %[left_old]\n\t"      \
-    "vmov.i8 q6, #0xff\n\t"           \
-    "dlstp.8 lr, %[lanes]\n"          \
-    "1:\n\t"
-#define MVE_LOAD_RUN                        \
-    "vldrb.u8 q0, [%[right_new]], #16\n\t"  \
-    "vldrb.u8 q1, [%[right_old]], #16\n\t"
+#define MVE_BEGIN(registers)          \
+    "ldm %[window], {" registers "}\n\t" \
+    "ldrb lr, [r0, #1]!\n\t"          \
+    "vdup.8 q4, lr\n\t"               \
+    "ldrb lr, [r1, #1]!\n\t"          \
+    "vdup.8 q5, lr\n\t"               \
+    "subs r2, #1\n\t"                 \
+    "subs r3, #1\n\t"                 \
+    "add r4, r9\n\t"                  \
+    "add r5, r9\n\t"                  \
+    "stm %[window], {r0-r5}\n\t"      \
+    "vmov.i8 q6, #0xff\n\t"
+#define MVE_LOAD_RUN                  \
+    "dlstp.8 lr, r9\n"                \
+    "1:\n\t"                          \
+    "vldrb.u8 q0, [r2], #16\n\t"      \
+    "vldrb.u8 q1, [r3], #16\n\t"
 /* Lanes whose right pixel lies left of the picture take its first one: eq. (11). */
-#define MVE_LOAD_CLIPPED                    \
-    "vidup.u8 q3, %[least], #1\n\t"          \
-    "vmin.u8 q3, q3, q7\n\t"                \
-    "vldrb.u8 q0, [%[right_new], q3]\n\t"   \
-    "vldrb.u8 q1, [%[right_old], q3]\n\t"
+#define MVE_LOAD_CLIPPED              \
+    "vdup.8 q7, r10\n\t"              \
+    "mov r10, #0\n\t"                 \
+    "dlstp.8 lr, r9\n"                \
+    "1:\n\t"                          \
+    "vidup.u8 q3, r10, #1\n\t"        \
+    "vmin.u8 q3, q3, q7\n\t"          \
+    "vldrb.u8 q0, [r2, q3]\n\t"       \
+    "vldrb.u8 q1, [r3, q3]\n\t"
 /* q0 = column - leave, with the column moved down */
-#define MVE_MOVE_COLUMN                     \
-    "vabd.u8 q0, q0, q4\n\t"                \
-    "vldrb.u8 q2, [%[column]]\n\t"          \
-    "vabd.u8 q1, q1, q5\n\t"                \
-    "vadd.i8 q0, q0, q2\n\t"                \
-    "vsub.i8 q0, q0, q1\n\t"                \
-    "vstrb.8 q0, [%[column]], #16\n\t"      \
-    "vldrb.u8 q3, [%[leave]], #16\n\t"      \
+#define MVE_MOVE_COLUMN               \
+    "vabd.u8 q0, q0, q4\n\t"          \
+    "vldrb.u8 q2, [r4]\n\t"           \
+    "vabd.u8 q1, q1, q5\n\t"          \
+    "vadd.i8 q0, q0, q2\n\t"          \
+    "vsub.i8 q0, q0, q1\n\t"          \
+    "vstrb.8 q0, [r4], #16\n\t"       \
+    "vldrb.u8 q3, [r5], #16\n\t"      \
     "vsub.i8 q0, q0, q3\n\t"
-#define MVE_MOVE_KEYS                       \
-    "vldrh.u16 q1, [%[even]]\n\t"           \
-    "vshllb.s8 q2, q0, #3\n\t"              \
-    "vldrh.u16 q3, [%[odd]]\n\t"            \
-    "vadd.i16 q1, q1, q2\n\t"               \
-    "vshllt.s8 q0, q0, #3\n\t"              \
-    "vstrh.16 q1, [%[even]], #16\n\t"       \
-    "vadd.i16 q3, q3, q0\n\t"               \
-    "vmin.u16 q6, q6, q1\n\t"               \
-    "vstrh.16 q3, [%[odd]], #16\n\t"        \
-    "vmin.u16 q6, q6, q3\n\t"               \
-    "letp lr, 1b\n\t"                       \
-    "mvn %[least], #0\n\t"                  \
+#define MVE_MOVE_KEYS                 \
+    "vldrh.u16 q1, [r6]\n\t"          \
+    "vshllb.s8 q2, q0, #3\n\t"        \
+    "vldrh.u16 q3, [r8]\n\t"          \
+    "vadd.i16 q1, q1, q2\n\t"         \
+    "vshllt.s8 q0, q0, #3\n\t"        \
+    "vstrh.16 q1, [r6], #16\n\t"      \
+    "vadd.i16 q3, q3, q0\n\t"         \
+    "vmin.u16 q6, q6, q1\n\t"         \
+    "vstrh.16 q3, [r8], #16\n\t"      \
+    "vmin.u16 q6, q6, q3\n\t"         \
+    "letp lr, 1b\n\t"                 \
+    "mvn %[least], #0\n\t"            \
     "vminv.u16 %[least], q6"
-#define MVE_MOVE_SUMS                       \
-    "vldrb.u8 q1, [%[sums]]\n\t"            \
-    "vadd.i8 q1, q1, q0\n\t"                \
-    "vstrb.8 q1, [%[sums]], #16\n\t"        \
-    "vmin.u8 q6, q6, q1\n\t"                \
-    "letp lr, 1b\n\t"                       \
-    "mvn %[least], #0\n\t"                  \
+#define MVE_MOVE_SUMS                 \
+    "vldrb.u8 q1, [r6]\n\t"           \
+    "vadd.i8 q1, q1, q0\n\t"          \
+    "vstrb.8 q1, [r6], #16\n\t"       \
+    "vmin.u8 q6, q6, q1\n\t"          \
+    "letp lr, 1b\n\t"                 \
+    "mvn %[least], #0\n\t"            \
     "vminv.u8 %[least], q6"
-#define MVE_STEP_OPERANDS                                                                            \
-    [right_new] "+r"(step.right_new), [right_old] "+r"(step.right_old), [column] "+r"(step.column),  \
-    [leave] "+r"(step.leave)
-#define MVE_STEP_INPUTS [left_new] "r"(step.left_new), [left_old] "r"(step.left_old), [lanes] "r"(lanes)
+#define MVE_RUN "r0-r6, r8, r9"
+#define MVE_CLIPPED "r0-r6, r8-r10"
+#define MVE_CLOBBERED                                                                                        \
+    "r0", "r1", "r2", "r3", "r4", "r5", "r6", "r8", "r9", "lr", "q0", "q1", "q2", "q3", "q4", "q5", "q6",    \
+    "memory"
 /* clang-format on */
 
 /* One step of 16-bit sums; the least key. */
-static inline unsigned mve_move_keys(struct mve_step step, unsigned lanes, uint16_t *even, uint16_t *odd)
+static inline unsigned mve_move_keys(struct mve_window *window)
 {
     unsigned least;
-    __asm volatile(MVE_BEGIN MVE_LOAD_RUN MVE_MOVE_COLUMN MVE_MOVE_KEYS
-                   : MVE_STEP_OPERANDS, [even] "+r"(even), [odd] "+r"(odd), [least] "=r"(least)
-                   : MVE_STEP_INPUTS
-                   : "q0", "q1", "q2", "q3", "q4", "q5", "q6", "lr", "memory");
+    __asm volatile(MVE_BEGIN(MVE_RUN) MVE_LOAD_RUN MVE_MOVE_COLUMN MVE_MOVE_KEYS
+                   : [least] "=r"(least)
+                   : [window] "r"(window)
+                   : MVE_CLOBBERED);
     return least;
 }
 
-/* The same where lanes above limit meet the pixel of lane limit. */
-static inline unsigned mve_move_clipped_keys(struct mve_step step, unsigned lanes, unsigned limit, uint16_t *even,
-                                             uint16_t *odd)
+/* The same, obeying limit. */
+static inline unsigned mve_move_clipped_keys(struct mve_window *window)
 {
-    unsigned least = 0; /* before that, the lane */
-    __asm volatile("vdup.8 q7, %[limit]\n\t" MVE_BEGIN MVE_LOAD_CLIPPED MVE_MOVE_COLUMN MVE_MOVE_KEYS
-                   : MVE_STEP_OPERANDS, [even] "+r"(even), [odd] "+r"(odd), [least] "+Te"(least)
-                   : MVE_STEP_INPUTS, [limit] "r"(limit)
-                   : "q0", "q1", "q2", "q3", "q4", "q5", "q6", "q7", "lr", "memory");
+    unsigned least;
+    __asm volatile(MVE_BEGIN(MVE_CLIPPED) MVE_LOAD_CLIPPED MVE_MOVE_COLUMN MVE_MOVE_KEYS
+                   : [least] "=r"(least)
+                   : [window] "r"(window)
+                   : MVE_CLOBBERED, "r10", "q7");
     return least;
 }
 
 /* One step of 8-bit sums; the least one. */
-static inline unsigned mve_move_sums(struct mve_step step, unsigned lanes, uint8_t *sums)
+static inline unsigned mve_move_sums(struct mve_window *window)
 {
     unsigned least;
-    __asm volatile(MVE_BEGIN MVE_LOAD_RUN MVE_MOVE_COLUMN MVE_MOVE_SUMS
-                   : MVE_STEP_OPERANDS, [sums] "+r"(sums), [least] "=r"(least)
-                   : MVE_STEP_INPUTS
-                   : "q0", "q1", "q2", "q3", "q4", "q5", "q6", "lr", "memory");
+    __asm volatile(MVE_BEGIN(MVE_RUN) MVE_LOAD_RUN MVE_MOVE_COLUMN MVE_MOVE_SUMS
+                   : [least] "=r"(least)
+                   : [window] "r"(window)
+                   : MVE_CLOBBERED);
     return least;
 }
 
-static inline void mve_move_clipped_sums(struct mve_step step, unsigned lanes, unsigned limit, uint8_t *sums)
+static inline void mve_move_clipped_sums(struct mve_window *window)
 {
-    unsigned least = 0; /* before that, the lane */
-    __asm volatile("vdup.8 q7, %[limit]\n\t" MVE_BEGIN MVE_LOAD_CLIPPED MVE_MOVE_COLUMN MVE_MOVE_SUMS
-                   : MVE_STEP_OPERANDS, [sums] "+r"(sums), [least] "+Te"(least)
-                   : MVE_STEP_INPUTS, [limit] "r"(limit)
-                   : "q0", "q1", "q2", "q3", "q4", "q5", "q6", "q7", "lr", "memory");
+    unsigned least;
+    __asm volatile(MVE_BEGIN(MVE_CLIPPED) MVE_LOAD_CLIPPED MVE_MOVE_COLUMN MVE_MOVE_SUMS
+                   : [least] "=r"(least)
+                   : [window] "r"(window)
+                   : MVE_CLOBBERED, "r10", "q7");
 }
 
 static inline unsigned mve_find_least_key(const uint16_t *even, const uint16_t *odd, unsigned lanes)
