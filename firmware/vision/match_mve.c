@@ -30,6 +30,7 @@ struct row {
     struct tsr_mve_found *next; /* of found */
     uint16_t *claims;           /* of the next pixel's lane 0 */
     uint16_t *choices;          /* of the first pixel in found */
+    unsigned enter;             /* the next column */
     uint8_t *first_column;
     unsigned first; /* its number */
     unsigned start; /* s */
@@ -122,13 +123,14 @@ static void begin_row(const struct tsr_match *match, unsigned y_new, unsigned y_
     uint16_t *keys = (uint16_t *)(void *)match->scratch;
     row->unique_scale = off ? 0 : scale;
     row->unique_one = off ? 0 : 1;
-    row->next = row->found;
     row->claims = scratch.claims;
     row->choices = scratch.choices + start;
+    row->next = row->found;
     row->start = start;
     row->last = config->width - 1u;
     row->radius = config->window / 2u;
     row->first = start > row->radius ? start - row->radius : 0u;
+    row->enter = row->first + 1u;
     row->first_column = scratch.columns + (size_t)row->first * config->disparities;
     row->texture_least = textured ? (unsigned)config->texture_min * config->window : 0u;
     row->window = (struct mve_window){
@@ -145,11 +147,13 @@ static void begin_row(const struct tsr_match *match, unsigned y_new, unsigned y_
     memset(scratch.choices, 0xff, sizeof *scratch.choices * start);
 }
 
-static void finish_found(struct row *row)
+/* The room for the next pixels. */
+static __attribute__((noinline)) struct tsr_mve_found *finish_found(struct row *row, const struct tsr_mve_found *end)
 {
-    tsr_mve_choose(row->found, (unsigned)(row->next - row->found), row->shift, row->texture_least, row->choices);
-    row->choices += row->next - row->found;
-    row->next = row->found;
+    unsigned count = (unsigned)(end - row->found);
+    tsr_mve_choose(row->found, count, row->shift, row->texture_least, row->choices);
+    row->choices += count;
+    return row->found;
 }
 
 /* Before the step to a column that is left of the first pixel with all lanes, or right of the picture: the last column
@@ -209,74 +213,81 @@ static void begin_sums(struct row *row)
     }
 }
 
-static inline void keep(struct row *row, struct tsr_mve_found found)
+/* Lane d is searched from the next pixel on. */
+static inline void unbar_key(const struct row *row, unsigned d)
 {
-    *row->next++ = found;
-    row->claims++;
-    if (row->next == row->found + TSR_MVE_FOUND_COUNT) {
-        finish_found(row);
-    }
+    uint16_t *key = (d % 2u != 0 ? row->window.odd : (uint16_t *)row->window.even) + d / 2u;
+    *key = (uint16_t)(*key ^ MVE_KEY_BARRED);
 }
 
-static __attribute__((noinline)) void step_keys_at_border(struct row *row, unsigned enter)
+/* Columns row->enter .. end - 1. */
+static inline __attribute__((always_inline)) void slide_keys(struct row *row, unsigned end, bool border)
 {
-    unsigned pixel = row->start + row->radius; /* whose window is complete when this column has entered */
-    unsigned d = enter - pixel;
-    if (enter >= pixel && d < row->window.lanes) {
-        uint16_t *key = (d % 2u != 0 ? row->window.odd : (uint16_t *)row->window.even) + d / 2u;
-        *key = (uint16_t)(*key ^ MVE_KEY_BARRED);
+    struct tsr_mve_found *next = row->next;
+    uint16_t *claims = row->claims;
+    unsigned pixel = row->start + row->radius; /* the column that completes the first window */
+    for (unsigned enter = row->enter; enter < end; enter++) {
+        unsigned key;
+        if (border) {
+            if (enter - pixel < row->window.lanes) {
+                unbar_key(row, enter - pixel);
+            }
+            set_border(row, enter);
+            key = mve_move_clipped_keys(&row->window);
+            if (enter < pixel) {
+                continue;
+            }
+        } else {
+            key = mve_move_keys(&row->window);
+        }
+        *next++ = search_keys(row, claims++, key);
+        if (next == row->found + TSR_MVE_FOUND_COUNT) {
+            next = finish_found(row, next);
+        }
     }
-    set_border(row, enter);
-    unsigned key = mve_move_clipped_keys(&row->window);
-    if (enter >= pixel) {
-        keep(row, search_keys(row, row->claims, key));
-    }
+    row->next = next;
+    row->claims = claims;
+    row->enter = end;
 }
 
-static void match_by_keys(struct row *row)
+static __attribute__((noinline)) void slide_keys_at_border(struct row *row, unsigned end)
 {
-    unsigned enter = row->first + 1u;
-    unsigned inner = least_of(row->start + row->window.lanes + row->radius, row->last + 1u);
-    begin_keys(row);
-    for (; enter < inner; enter++) {
-        step_keys_at_border(row, enter);
-    }
-    for (; enter <= row->last; enter++) {
-        unsigned key = mve_move_keys(&row->window);
-        keep(row, search_keys(row, row->claims, key));
-    }
-    for (; enter <= row->last + row->radius; enter++) {
-        step_keys_at_border(row, enter);
-    }
+    slide_keys(row, end, true);
 }
 
-static __attribute__((noinline)) void step_sums_at_border(struct row *row, unsigned enter)
+/* The same of 8-bit sums. */
+static inline __attribute__((always_inline)) void slide_sums(struct row *row, unsigned end, bool border)
 {
-    set_border(row, enter);
-    mve_move_clipped_sums(&row->window);
+    struct tsr_mve_found *next = row->next;
+    uint16_t *claims = row->claims;
     unsigned pixel = row->start + row->radius;
-    if (enter >= pixel) {
-        unsigned lanes = least_of(enter - pixel + 1u, row->window.lanes);
-        unsigned sum = mve_find_least_sum(row->window.even, lanes);
-        keep(row, search_sums(row, row->claims, sum, lanes));
+    for (unsigned enter = row->enter; enter < end; enter++) {
+        unsigned sum;
+        unsigned lanes = row->window.lanes;
+        if (border) {
+            set_border(row, enter);
+            mve_move_clipped_sums(&row->window);
+            if (enter < pixel) {
+                continue;
+            }
+            lanes = least_of(enter - pixel + 1u, lanes);
+            sum = mve_find_least_sum(row->window.even, lanes);
+        } else {
+            sum = mve_move_sums(&row->window);
+        }
+        *next++ = search_sums(row, claims++, sum, lanes);
+        if (next == row->found + TSR_MVE_FOUND_COUNT) {
+            next = finish_found(row, next);
+        }
     }
+    row->next = next;
+    row->claims = claims;
+    row->enter = end;
 }
 
-static void match_by_sums(struct row *row)
+static __attribute__((noinline)) void slide_sums_at_border(struct row *row, unsigned end)
 {
-    unsigned enter = row->first + 1u;
-    unsigned inner = least_of(row->start + row->window.lanes + row->radius, row->last + 1u);
-    begin_sums(row);
-    for (; enter < inner; enter++) {
-        step_sums_at_border(row, enter);
-    }
-    for (; enter <= row->last; enter++) {
-        unsigned sum = mve_move_sums(&row->window);
-        keep(row, search_sums(row, row->claims, sum, row->window.lanes));
-    }
-    for (; enter <= row->last + row->radius; enter++) {
-        step_sums_at_border(row, enter);
-    }
+    slide_sums(row, end, true);
 }
 
 static void match_row(const struct tsr_match *match, unsigned y, unsigned y_new, unsigned y_old)
@@ -284,14 +295,22 @@ static void match_row(const struct tsr_match *match, unsigned y, unsigned y_new,
     struct row row;
     tsr_mve_move_texture(match, y_new, y_old);
     begin_row(match, y_new, y_old, &row);
+    unsigned width = match->config.width;
+    unsigned inner = least_of(row.start + row.window.lanes + row.radius, width); /* all lanes are searched from here */
     if (match->config.mode == TSR_MATCH_SAD8) {
         row.shift = 0;
-        match_by_sums(&row);
+        begin_sums(&row);
+        slide_sums_at_border(&row, inner);
+        slide_sums(&row, width, false);
+        slide_sums_at_border(&row, width + row.radius);
     } else {
         row.shift = MVE_KEY_SHIFT;
-        match_by_keys(&row);
+        begin_keys(&row);
+        slide_keys_at_border(&row, inner);
+        slide_keys(&row, width, false);
+        slide_keys_at_border(&row, width + row.radius);
     }
-    finish_found(&row);
+    (void)finish_found(&row, row.next);
     tsr_mve_write_row(match, y);
 }
 

@@ -27,12 +27,6 @@ static void gather_rows(const struct tsr_gray *frame, unsigned y, uint8_t *kept,
     rows[2] = y + 1u < frame->height ? row + frame->stride : copy;
 }
 
-/* Eight pixels of a row, times 1, less those two to their left. */
-static inline int16x8_t differ(const uint8_t *left, mve_pred16_t lanes)
-{
-    return vreinterpretq_s16_u16(vsubq_u16(vldrbq_z_u16(left + 2, lanes), vldrbq_z_u16(left, lanes)));
-}
-
 /* One pixel, with the columns beside it. */
 static uint8_t derive_pixel(const uint8_t *const rows[3], unsigned left, unsigned right, int cap)
 {
@@ -42,6 +36,30 @@ static uint8_t derive_pixel(const uint8_t *const rows[3], unsigned left, unsigne
     return (uint8_t)((value > cap ? cap : value) + cap);
 }
 
+/* clang-format off */
+/* Eight pixels in q0 from what lies left of them in three rows. */
+#define FILTER                              \
+    "dlstp.16 lr, %[count]\n"               \
+    "1:\n\t"                                \
+    "vldrb.u16 q0, [%[above], #2]\n\t"      \
+    "vldrb.u16 q1, [%[above]], #8\n\t"      \
+    "vldrb.u16 q2, [%[below], #2]\n\t"      \
+    "vsub.i16 q0, q0, q1\n\t"               \
+    "vldrb.u16 q1, [%[below]], #8\n\t"      \
+    "vadd.i16 q0, q0, q2\n\t"               \
+    "vldrb.u16 q2, [%[middle], #2]\n\t"     \
+    "vsub.i16 q0, q0, q1\n\t"               \
+    "vldrb.u16 q1, [%[middle]], #8\n\t"     \
+    "vsub.i16 q2, q2, q1\n\t"               \
+    "vadd.i16 q0, q0, q2\n\t"               \
+    "vadd.i16 q0, q0, q2\n\t"               \
+    "vrshr.s16 q0, q0, #2\n\t"              \
+    "vmin.s16 q0, q0, q3\n\t"               \
+    "vmax.s16 q0, q0, q4\n\t"               \
+    "vadd.i16 q0, q0, q3\n\t"
+#define FILTER_OPERANDS [above] "+l"(rows[0]), [middle] "+l"(rows[1]), [below] "+l"(rows[2])
+/* clang-format on */
+
 /* Row y of a frame in place: eq. (10). The mirrored one is scattered. */
 static inline __attribute__((always_inline)) void filter_row(const struct tsr_gray *frame, unsigned y, uint8_t *kept,
                                                              int cap, bool mirror)
@@ -50,24 +68,28 @@ static inline __attribute__((always_inline)) void filter_row(const struct tsr_gr
     gather_rows(frame, y, kept, rows);
     unsigned last = frame->width - 1u;
     uint8_t *row = frame->pixels + (size_t)y * frame->stride;
-    int16x8_t highest = vdupq_n_s16((int16_t)cap);
-    int16x8_t lowest = vdupq_n_s16((int16_t)-cap);
-    uint16x8_t places = vsubq_u16(vdupq_n_u16((uint16_t)(last - 1u)), vidupq_n_u16(0, 1));
-    for (unsigned x = 1; x < last; x += HALVES) {
-        mve_pred16_t lanes = vctp16q(last - x);
-        int16x8_t middle = differ(rows[1] + x - 1u, lanes);
-        int16x8_t sum = vaddq_s16(differ(rows[0] + x - 1u, lanes), differ(rows[2] + x - 1u, lanes));
-        sum = vrshrq_n_s16(vaddq_s16(vaddq_s16(sum, middle), middle), 2);
-        sum = vaddq_s16(vmaxq_s16(vminq_s16(sum, highest), lowest), highest);
-        if (mirror) {
-            vstrbq_scatter_offset_p_s16((int8_t *)row, places, sum, lanes);
-            places = vsubq_n_u16(places, HALVES);
-        } else {
-            vstrbq_p_s16((int8_t *)row + x, sum, lanes);
-        }
+    uint8_t right = derive_pixel(rows, last - 1u, last, cap); /* before the row below is at an end */
+    uint8_t left = derive_pixel(rows, 0, 1, cap);
+    if (mirror) {
+        uint16x8_t places = vsubq_u16(vdupq_n_u16((uint16_t)(last - 1u)), vidupq_n_u16(0, 1));
+        __asm volatile("vdup.16 q3, %[cap]\n\tvneg.s16 q4, q3\n\t" FILTER
+                       "vstrb.16 q0, [%[out], %q[places]]\n\t"
+                       "vsub.i16 %q[places], %q[places], %[eight]\n\t"
+                       "letp lr, 1b"
+                       : FILTER_OPERANDS, [places] "+w"(places)
+                       : [out] "l"(row), [cap] "r"(cap), [count] "r"(last - 1u), [eight] "r"(HALVES)
+                       : "q0", "q1", "q2", "q3", "q4", "lr", "memory");
+    } else {
+        uint8_t *out = row + 1;
+        __asm volatile("vdup.16 q3, %[cap]\n\tvneg.s16 q4, q3\n\t" FILTER
+                       "vstrb.16 q0, [%[out]], #8\n\t"
+                       "letp lr, 1b"
+                       : FILTER_OPERANDS, [out] "+l"(out)
+                       : [cap] "r"(cap), [count] "r"(last - 1u)
+                       : "q0", "q1", "q2", "q3", "q4", "lr", "memory");
     }
-    row[mirror ? last : 0] = derive_pixel(rows, 0, 1, cap);
-    row[mirror ? 0 : last] = derive_pixel(rows, last - 1u, last, cap);
+    row[mirror ? last : 0] = left;
+    row[mirror ? 0 : last] = right;
 }
 
 void tsr_mve_prefilter_row(const struct tsr_match *match, unsigned y)
