@@ -23,6 +23,7 @@ static bool has_avx2(void)
 #endif
 
 /* The fastest first. */
+/* clang-format off */
 static const struct {
     const struct tsr_match_kernel *kernel;
     bool (*is_supported)(void);
@@ -39,6 +40,7 @@ static const struct {
 #endif
     {&tsr_match_kernel_portable, NULL},
 };
+/* clang-format on */
 
 const struct tsr_match_kernel *tsr_match_kernel_at(unsigned index)
 {

@@ -36,6 +36,7 @@ struct row {
     unsigned start; /* s */
     unsigned last;  /* W - 1 */
     unsigned radius;
+    unsigned settled; /* the last column whose step does not just follow the one before it */
     unsigned texture_least;
     unsigned shift; /* of sums in found */
 };
@@ -80,7 +81,7 @@ static inline __attribute__((always_inline)) struct tsr_mve_found search_keys(co
     unsigned sum = key >> MVE_KEY_SHIFT;
     uint16_t *even = row->window.even;
     uint16_t *odd = row->window.odd;
-    unsigned d = MVE_GROUP * group + mve_find_lane(even + 8u * group, odd + 8u * group, key);
+    unsigned d = TSR_MVE_GROUP * group + mve_find_lane(even + 8u * group, odd + 8u * group, key);
     claim_right(claims, sum, d);
     uint16_t *own = (d % 2u != 0 ? odd : even) + d / 2u;
     uint16_t *beside = d % 2u != 0 ? even + d / 2u : odd + d / 2u - 1;
@@ -131,6 +132,7 @@ static void begin_row(const struct tsr_match *match, unsigned y_new, unsigned y_
     row->radius = config->window / 2u;
     row->first = start > row->radius ? start - row->radius : 0u;
     row->enter = row->first + 1u;
+    row->settled = row->first + 2u * row->radius + 1u; /* at least s */
     row->first_column = scratch.columns + (size_t)row->first * config->disparities;
     row->texture_least = textured ? (unsigned)config->texture_min * config->window : 0u;
     row->window = (struct mve_window){
@@ -161,6 +163,10 @@ static __attribute__((noinline)) struct tsr_mve_found *finish_found(struct row *
 static inline void set_border(struct row *row, unsigned enter)
 {
     struct mve_window *window = &row->window;
+    if (enter > row->settled && enter <= row->last) {
+        window->limit += window->limit < window->lanes - 1u ? 1u : 0u;
+        return;
+    }
     unsigned x = enter;
     if (enter <= row->first + 2u * row->radius + 1u) {
         window->leave = row->first_column - window->lanes;
@@ -184,33 +190,24 @@ static void begin_keys(struct row *row)
 {
     uint16_t *even = row->window.even;
     uint16_t *odd = row->window.odd;
-    unsigned half = row->window.lanes / 2u;
-    unsigned scale = (2u * row->radius + 1u) << MVE_KEY_SHIFT;
-    memset(even + half, 0xff, sizeof *even * MVE_PAD);
-    memset(odd + half, 0xff, sizeof *odd * MVE_PAD);
+    memset(even + row->window.lanes / 2u, 0xff, sizeof *even * MVE_PAD);
+    memset(odd + row->window.lanes / 2u, 0xff, sizeof *odd * MVE_PAD);
     set_border(row, row->first);
     (void)mve_move_clipped_keys(&row->window);
-    const uint8_t *column = row->first_column;
-    for (unsigned i = 0; i < half; i++) {
-        unsigned barred = MVE_KEY_BARRED | i / (MVE_GROUP / 2u);
-        even[i] = (uint16_t)(barred + scale * column[2u * i]);
-        odd[i] = (uint16_t)(barred + scale * column[2u * i + 1u]);
-    }
+    mve_fill_keys(even, odd, row->window.lanes, row->first_column, 2u * row->radius + 1u);
 }
 
 /* As begin_keys, of 8-bit sums, which lie between pads. */
 static void begin_sums(struct row *row)
 {
     uint8_t *sums = row->window.even;
-    memset(sums, 0xff, MVE_GROUP);
-    sums += MVE_GROUP;
+    memset(sums, 0xff, TSR_MVE_GROUP);
+    sums += TSR_MVE_GROUP;
     row->window.even = sums;
-    memset(sums + row->window.lanes, 0xff, MVE_GROUP);
+    memset(sums + row->window.lanes, 0xff, TSR_MVE_GROUP);
     set_border(row, row->first);
     mve_move_clipped_sums(&row->window);
-    for (unsigned i = 0; i < row->window.lanes; i++) {
-        sums[i] = (uint8_t)((2u * row->radius + 1u) * row->first_column[i]);
-    }
+    mve_fill_sums(sums, row->window.lanes, row->first_column, 2u * row->radius + 1u);
 }
 
 /* Lane d is searched from the next pixel on. */

@@ -10,6 +10,8 @@
 
 #include "match_stages.h"
 
+#define TSR_MVE_GROUP 16u /* lanes d of a vector */
+
 void tsr_mve_prefilter_row(const struct tsr_match *match, unsigned y);
 void tsr_mve_add_row(const struct tsr_match *match, unsigned y, unsigned times);
 

@@ -41,23 +41,23 @@ void tsr_mve_choose(const struct tsr_mve_found found[TSR_MVE_FOUND_COUNT], unsig
                     unsigned texture_least, uint16_t *choices)
 {
     /* q0 sums, q1 disparities, q2 below, q3 above */
-    __asm volatile("vld40.16 {q0, q1, q2, q3}, [%[found]]\n\tvld41.16 {q0, q1, q2, q3}, [%[found]]\n\t"
-                   "vld42.16 {q0, q1, q2, q3}, [%[found]]\n\tvld43.16 {q0, q1, q2, q3}, [%[found]]\n\t"
-                   "vorr q4, q2, q3\n\t"
-                   "vshl.u16 q0, %[right]\n\tvshl.u16 q2, %[right]\n\tvshl.u16 q3, %[right]\n\t" FIND_OFFSET
-                   "vshl.i16 q0, q1, #5\n\t"
-                   "vadd.i16 q0, q0, q7\n\t"
-                   "vldrh.u16 q2, [%[choices]]\n\t"
-                   "vadd.i16 q0, q0, %[zero]\n\t"
-                   "vdup.16 q3, %[texture]\n\t"
-                   "vpt.u16 hi, q3, q2\n\tvmvnt.i16 q0, #0\n\t"
-                   "vpt.i16 eq, q1, %[none]\n\tvmvnt.i16 q0, #0\n\t"
-                   "vctp.16 %[count]\n\tvpst\n\tvstrht.16 q0, [%[choices]]"
-                   :
-                   : [found] "r"(found), [right] "r"(-(int)shift), [choices] "r"(choices),
-                     [zero] "r"(TSR_MATCH_CHOICE(0, 0)), [texture] "r"(texture_least),
-                     [none] "r"(TSR_MATCH_CHOICE_NONE), [count] "r"(count)
-                   : "q0", "q1", "q2", "q3", "q4", "q5", "q6", "q7", "memory", "cc");
+    __asm volatile(
+        "vld40.16 {q0, q1, q2, q3}, [%[found]]\n\tvld41.16 {q0, q1, q2, q3}, [%[found]]\n\t"
+        "vld42.16 {q0, q1, q2, q3}, [%[found]]\n\tvld43.16 {q0, q1, q2, q3}, [%[found]]\n\t"
+        "vorr q4, q2, q3\n\t"
+        "vshl.u16 q0, %[right]\n\tvshl.u16 q2, %[right]\n\tvshl.u16 q3, %[right]\n\t" FIND_OFFSET
+        "vshl.i16 q0, q1, #5\n\t"
+        "vadd.i16 q0, q0, q7\n\t"
+        "vldrh.u16 q2, [%[choices]]\n\t"
+        "vadd.i16 q0, q0, %[zero]\n\t"
+        "vdup.16 q3, %[texture]\n\t"
+        "vpt.u16 hi, q3, q2\n\tvmvnt.i16 q0, #0\n\t"
+        "vpt.i16 eq, q1, %[none]\n\tvmvnt.i16 q0, #0\n\t"
+        "vctp.16 %[count]\n\tvpst\n\tvstrht.16 q0, [%[choices]]"
+        :
+        : [found] "r"(found), [right] "r"(-(int)shift), [choices] "r"(choices), [zero] "r"(TSR_MATCH_CHOICE(0, 0)),
+          [texture] "r"(texture_least), [none] "r"(TSR_MATCH_CHOICE_NONE), [count] "r"(count)
+        : "q0", "q1", "q2", "q3", "q4", "q5", "q6", "q7", "memory", "cc");
 }
 _Static_assert(TSR_MATCH_CHOICE_NONE == 0xffff, "as VMVN makes it");
 

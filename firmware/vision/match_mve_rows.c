@@ -72,8 +72,7 @@ static inline __attribute__((always_inline)) void filter_row(const struct tsr_gr
     uint8_t left = derive_pixel(rows, 0, 1, cap);
     if (mirror) {
         uint16x8_t places = vsubq_u16(vdupq_n_u16((uint16_t)(last - 1u)), vidupq_n_u16(0, 1));
-        __asm volatile("vdup.16 q3, %[cap]\n\tvneg.s16 q4, q3\n\t" FILTER
-                       "vstrb.16 q0, [%[out], %q[places]]\n\t"
+        __asm volatile("vdup.16 q3, %[cap]\n\tvneg.s16 q4, q3\n\t" FILTER "vstrb.16 q0, [%[out], %q[places]]\n\t"
                        "vsub.i16 %q[places], %q[places], %[eight]\n\t"
                        "letp lr, 1b"
                        : FILTER_OPERANDS, [places] "+w"(places)
@@ -81,8 +80,7 @@ static inline __attribute__((always_inline)) void filter_row(const struct tsr_gr
                        : "q0", "q1", "q2", "q3", "q4", "lr", "memory");
     } else {
         uint8_t *out = row + 1;
-        __asm volatile("vdup.16 q3, %[cap]\n\tvneg.s16 q4, q3\n\t" FILTER
-                       "vstrb.16 q0, [%[out]], #8\n\t"
+        __asm volatile("vdup.16 q3, %[cap]\n\tvneg.s16 q4, q3\n\t" FILTER "vstrb.16 q0, [%[out]], #8\n\t"
                        "letp lr, 1b"
                        : FILTER_OPERANDS, [out] "+l"(out)
                        : [cap] "r"(cap), [count] "r"(last - 1u)

@@ -26,13 +26,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "match_stages.h"
+#include "match_mve.h"
 
-#define MVE_GROUP 16u
 #define MVE_PAD 8u
 #define MVE_KEY_SHIFT 3
 #define MVE_KEY_BARRED 0x8000u
-_Static_assert(TSR_DISPARITY_COUNT_MAX / MVE_GROUP <= 1u << MVE_KEY_SHIFT, "a group's number fits below the sum");
+_Static_assert(TSR_DISPARITY_COUNT_MAX / TSR_MVE_GROUP <= 1u << MVE_KEY_SHIFT, "a group's number fits below the sum");
 
 /*
  * Before a step the pointers are those of the column before; a step moves them
@@ -125,8 +124,8 @@ static inline unsigned mve_move_keys(struct mve_window *window)
 {
     unsigned least;
     __asm volatile(MVE_BEGIN(MVE_RUN) MVE_LOAD_RUN MVE_MOVE_COLUMN MVE_MOVE_KEYS
-                   : [least] "=r"(least)
-                   : [window] "r"(window)
+                   : [least] "=h"(least)
+                   : [window] "h"(window)
                    : MVE_CLOBBERED);
     return least;
 }
@@ -136,8 +135,8 @@ static inline unsigned mve_move_clipped_keys(struct mve_window *window)
 {
     unsigned least;
     __asm volatile(MVE_BEGIN(MVE_CLIPPED) MVE_LOAD_CLIPPED MVE_MOVE_COLUMN MVE_MOVE_KEYS
-                   : [least] "=r"(least)
-                   : [window] "r"(window)
+                   : [least] "=h"(least)
+                   : [window] "h"(window)
                    : MVE_CLOBBERED, "r10", "q7");
     return least;
 }
@@ -147,8 +146,8 @@ static inline unsigned mve_move_sums(struct mve_window *window)
 {
     unsigned least;
     __asm volatile(MVE_BEGIN(MVE_RUN) MVE_LOAD_RUN MVE_MOVE_COLUMN MVE_MOVE_SUMS
-                   : [least] "=r"(least)
-                   : [window] "r"(window)
+                   : [least] "=h"(least)
+                   : [window] "h"(window)
                    : MVE_CLOBBERED);
     return least;
 }
@@ -157,9 +156,43 @@ static inline void mve_move_clipped_sums(struct mve_window *window)
 {
     unsigned least;
     __asm volatile(MVE_BEGIN(MVE_CLIPPED) MVE_LOAD_CLIPPED MVE_MOVE_COLUMN MVE_MOVE_SUMS
-                   : [least] "=r"(least)
-                   : [window] "r"(window)
+                   : [least] "=h"(least)
+                   : [window] "h"(window)
                    : MVE_CLOBBERED, "r10", "q7");
+}
+
+/* Keys of the sums of a column taken times over, all barred. */
+static inline void mve_fill_keys(uint16_t *even, uint16_t *odd, unsigned lanes, const uint8_t *column, unsigned times)
+{
+    unsigned base = MVE_KEY_BARRED;
+    __asm volatile("vdup.8 q2, %[scale]\n\t"
+                   "dlstp.8 lr, %[lanes]\n"
+                   "1:\n\t"
+                   "vldrb.u8 q0, [%[column]], #16\n\t"
+                   "vmullb.u8 q1, q0, q2\n\t"
+                   "vmullt.u8 q0, q0, q2\n\t"
+                   "vadd.i16 q1, q1, %[base]\n\t"
+                   "vadd.i16 q0, q0, %[base]\n\t"
+                   "add %[base], #1\n\t"
+                   "vstrh.16 q1, [%[even]], #16\n\t"
+                   "vstrh.16 q0, [%[odd]], #16\n\t"
+                   "letp lr, 1b"
+                   : [even] "+r"(even), [odd] "+r"(odd), [column] "+r"(column), [base] "+r"(base)
+                   : [lanes] "r"(lanes), [scale] "r"(times << MVE_KEY_SHIFT)
+                   : "q0", "q1", "q2", "lr", "memory");
+}
+
+static inline void mve_fill_sums(uint8_t *sums, unsigned lanes, const uint8_t *column, unsigned times)
+{
+    __asm volatile("dlstp.8 lr, %[lanes]\n"
+                   "1:\n\t"
+                   "vldrb.u8 q0, [%[column]], #16\n\t"
+                   "vmul.i8 q0, q0, %[times]\n\t"
+                   "vstrb.8 q0, [%[sums]], #16\n\t"
+                   "letp lr, 1b"
+                   : [sums] "+r"(sums), [column] "+r"(column)
+                   : [lanes] "r"(lanes), [times] "r"(times)
+                   : "q0", "lr", "memory");
 }
 
 static inline unsigned mve_find_least_key(const uint16_t *even, const uint16_t *odd, unsigned lanes)
@@ -217,7 +250,7 @@ static inline unsigned mve_find_lane(const uint16_t *even, const uint16_t *odd, 
 /* The lowest lane that has the sum; there is one. */
 static inline unsigned mve_find_lane_of_sum(const uint8_t *sums, unsigned sum)
 {
-    unsigned equal;
+    unsigned equal = 0;
     const uint8_t *at = sums;
     do {
         __asm volatile("vldrb.u8 q0, [%[at]], #16\n\t"
@@ -227,7 +260,7 @@ static inline unsigned mve_find_lane_of_sum(const uint8_t *sums, unsigned sum)
                        : [sum] "r"(sum)
                        : "q0", "memory", "cc");
     } while (equal == 0);
-    return (unsigned)(at - sums) - MVE_GROUP + (unsigned)__builtin_ctz(equal);
+    return (unsigned)(at - sums) - TSR_MVE_GROUP + (unsigned)__builtin_ctz(equal);
 }
 
 #endif
