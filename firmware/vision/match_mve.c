@@ -36,7 +36,7 @@ struct row {
     unsigned start; /* s */
     unsigned last;  /* W - 1 */
     unsigned radius;
-    unsigned settled; /* the last column whose step does not just follow the one before it */
+    unsigned settled; /* until this column has entered, what leaves is the first column */
     unsigned texture_least;
     unsigned shift; /* of sums in found */
 };
@@ -163,12 +163,12 @@ static __attribute__((noinline)) struct tsr_mve_found *finish_found(struct row *
 static inline void set_border(struct row *row, unsigned enter)
 {
     struct mve_window *window = &row->window;
-    if (enter > row->settled && enter <= row->last) {
+    if (enter > row->settled && enter <= row->last) { /* also right of s: one more lane than before */
         window->limit += window->limit < window->lanes - 1u ? 1u : 0u;
         return;
     }
     unsigned x = enter;
-    if (enter <= row->first + 2u * row->radius + 1u) {
+    if (enter <= row->settled) {
         window->leave = row->first_column - window->lanes;
     }
     if (enter <= row->start) {

@@ -3,6 +3,9 @@
  * written in match_mve_rows.c, match_mve.c slides the window of
  * match_mve_window.h along a row, match_mve_choose.c judges what it finds.
  *
+ * Assembly statements that compare change VPR, for which GCC 12 has no name
+ * among the clobbers: no function has both those and predicated intrinsics.
+ *
  * SPDX-License-Identifier: Apache-2.0
  */
 #ifndef TSR_VISION_MATCH_MVE_H

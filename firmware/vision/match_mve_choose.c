@@ -57,7 +57,7 @@ void tsr_mve_choose(const struct tsr_mve_found found[TSR_MVE_FOUND_COUNT], unsig
         :
         : [found] "r"(found), [right] "r"(-(int)shift), [choices] "r"(choices), [zero] "r"(TSR_MATCH_CHOICE(0, 0)),
           [texture] "r"(texture_least), [none] "r"(TSR_MATCH_CHOICE_NONE), [count] "r"(count)
-        : "q0", "q1", "q2", "q3", "q4", "q5", "q6", "q7", "memory", "cc");
+        : "q0", "q1", "q2", "q3", "q4", "q5", "q6", "q7", "memory");
 }
 _Static_assert(TSR_MATCH_CHOICE_NONE == 0xffff, "as VMVN makes it");
 
@@ -144,6 +144,6 @@ void tsr_mve_write_row(const struct tsr_match *match, unsigned y)
                    : [claims] "r"(scratch.claims), [width] "r"(config->width), [last] "r"(config->width - 1u),
                      [tolerance] "r"(tolerance), [reach] "r"(2u * tolerance), [eight] "r"(8),
                      [invalid] "r"(TSR_DISPARITY_INVALID), [mask] "i"(TSR_MATCH_CLAIM_D(UINT16_MAX))
-                   : "q0", "q1", "q2", "q3", "q4", "q5", "q6", "lr", "memory", "cc");
+                   : "q0", "q1", "q2", "q3", "q4", "q5", "q6", "lr", "memory");
 }
 #endif

@@ -116,7 +116,7 @@ _Static_assert(sizeof(struct mve_window) == 10 * sizeof(uint32_t), "words, as th
 #define MVE_CLIPPED "r0-r6, r8-r10"
 #define MVE_CLOBBERED                                                                                        \
     "r0", "r1", "r2", "r3", "r4", "r5", "r6", "r8", "r9", "lr", "q0", "q1", "q2", "q3", "q4", "q5", "q6",    \
-    "memory"
+    "cc", "memory"
 /* clang-format on */
 
 /* One step of 16-bit sums; the least key. */
@@ -173,13 +173,13 @@ static inline void mve_fill_keys(uint16_t *even, uint16_t *odd, unsigned lanes, 
                    "vmullt.u8 q0, q0, q2\n\t"
                    "vadd.i16 q1, q1, %[base]\n\t"
                    "vadd.i16 q0, q0, %[base]\n\t"
-                   "add %[base], #1\n\t"
+                   "add %[base], %[base], #1\n\t"
                    "vstrh.16 q1, [%[even]], #16\n\t"
                    "vstrh.16 q0, [%[odd]], #16\n\t"
                    "letp lr, 1b"
                    : [even] "+r"(even), [odd] "+r"(odd), [column] "+r"(column), [base] "+r"(base)
                    : [lanes] "r"(lanes), [scale] "r"(times << MVE_KEY_SHIFT)
-                   : "q0", "q1", "q2", "lr", "memory");
+                   : "q0", "q1", "q2", "lr", "cc", "memory");
 }
 
 static inline void mve_fill_sums(uint8_t *sums, unsigned lanes, const uint8_t *column, unsigned times)
@@ -243,7 +243,7 @@ static inline unsigned mve_find_lane(const uint16_t *even, const uint16_t *odd, 
                    "vmrs %[odds], p0"
                    : [evens] "=&r"(evens), [odds] "=r"(odds)
                    : [even] "r"(even), [odd] "r"(odd), [key] "r"(key)
-                   : "q0", "q1", "memory", "cc");
+                   : "q0", "q1", "memory");
     return (unsigned)__builtin_ctz((evens & 0x55555555u) | (odds & 0xaaaaaaaau));
 }
 
@@ -258,7 +258,7 @@ static inline unsigned mve_find_lane_of_sum(const uint8_t *sums, unsigned sum)
                        "vmrs %[equal], p0"
                        : [at] "+r"(at), [equal] "=r"(equal)
                        : [sum] "r"(sum)
-                       : "q0", "memory", "cc");
+                       : "q0", "memory");
     } while (equal == 0);
     return (unsigned)(at - sums) - TSR_MVE_GROUP + (unsigned)__builtin_ctz(equal);
 }
