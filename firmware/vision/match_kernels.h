@@ -10,7 +10,7 @@
 
 #include "match_stages.h"
 
-/* Cortex-M55, M85: the vector extension with integers, and low-overhead loops (ARMv8-M ARM, B5.6, B3.28). */
+/* Cortex-M55, M85: MVE with integers, and the low-overhead loops that come with it in Armv8.1-M. */
 #if defined(__ARM_FEATURE_MVE)
 #define TSR_MATCH_HAS_MVE
 extern const struct tsr_match_kernel tsr_match_kernel_mve;

@@ -1,4 +1,4 @@
-"""The matcher: Cortex-M4 and M55 instructions, speed beside OpenCV's StereoBM, memory, and quality on pairs with ground truth.
+"""The matcher: instructions on Cortex-M4 and M55, speed beside OpenCV's StereoBM, memory, quality on pairs with truth.
 
 Pairs come from TSR_DATA (by default ../shared/data beside the source tree); without them there is no quality. One
 (pixel, disparity) is counted for every pixel of the map and every disparity searched, the left border included.
@@ -43,7 +43,8 @@ def instructions():
     for machine, (core, goals) in BOARDS.items():
         for name, shape, rows in work_table.measure(machine=machine)[:2]:
             yield target(f"{core}, sad, {name}, D = {shape[2]}", work_table.match_per_output(shape, rows),
-                         "instructions per px disparity", goals[shape[0]], True, "QEMU plugin, exact, from start to map")
+                         "instructions per px disparity", goals[shape[0]], True,
+                         "QEMU plugin, exact, from start to map")
 
 
 def memory():
