@@ -28,10 +28,14 @@ static bool has_avx2(void)
 #endif
 
 /* The fastest first. */
+/* clang-format off */
 static const struct {
     const struct tsr_match_kernel *kernel;
     bool (*is_supported)(void);
 } kernels[] = {
+#if defined(TSR_MATCH_HAS_MVE)
+    {&tsr_match_kernel_mve, NULL},
+#endif
 #if defined(TSR_MATCH_HAS_DSP)
     {&tsr_match_kernel_dsp, NULL},
 #endif
@@ -41,6 +45,7 @@ static const struct {
 #endif
     {&tsr_match_kernel_portable, NULL},
 };
+/* clang-format on */
 
 const struct tsr_match_kernel *tsr_match_kernel_at(unsigned index)
 {

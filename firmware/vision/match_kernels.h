@@ -15,6 +15,12 @@
     .describe_row = tsr_match_describe_row, .add_census = tsr_match_add_census, .census_row = tsr_match_census_row,    \
     .cost_row = tsr_match_cost_row, .smooth_row = tsr_match_smooth_row
 
+/* Cortex-M55, M85: MVE with integers, and the low-overhead loops that come with it in Armv8.1-M. */
+#if defined(__ARM_FEATURE_MVE)
+#define TSR_MATCH_HAS_MVE
+extern const struct tsr_match_kernel tsr_match_kernel_mve;
+#endif
+
 /* Cortex-M4, M7, M33: the DSP extension's parallel arithmetic (ARMv7-M ARM, A4.4.3), in Thumb state. */
 #if defined(__ARM_FEATURE_SIMD32) && defined(__thumb2__) && !defined(__ARM_ARCH_7A__)
 #define TSR_MATCH_HAS_DSP

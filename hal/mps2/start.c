@@ -1,5 +1,5 @@
 /*
- * Reset and faults of a Cortex-M4 image.
+ * Reset and faults of a Cortex-M4 or M55 image.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -8,7 +8,7 @@
 #include "tsr/hal/mps2_semihosting.h"
 #include "tsr/hal/mps2_stack.h"
 
-/* ARMv7-M Architecture Reference Manual, B3.2.20: full access to CP10 and CP11, the FPU. */
+/* ARMv7-M Architecture Reference Manual, B3.2.20: full access to CP10 and CP11, the FPU and MVE. */
 #define CPACR (*(volatile uint32_t *)0xe000ed88u)
 #define CPACR_FPU (UINT32_C(0xf) << 20)
 

@@ -15,7 +15,7 @@ struct uart {
     uint32_t interrupt;
     uint32_t divisor;
 };
-#define UART0 ((volatile struct uart *)0x40004000u)
+#define UART0 ((volatile struct uart *)TSR_MPS2_UART0) /* the board's, from the build */
 #define STATE_TX_FULL 1u
 #define STATE_RX_FULL 2u
 #define CONTROL_TX_ENABLE 1u

@@ -1,4 +1,4 @@
-"""Measured Cortex-M4 instructions per unit of work, and the emulator's table of them. Not a benchmark by itself.
+"""Measured instructions per unit of work, and the emulator's table of them. Not a benchmark by itself.
 
 SPDX-License-Identifier: Apache-2.0
 """
@@ -30,12 +30,13 @@ KINDS = {
 }
 
 
-def measure(with_data=False):
+def measure(with_data=False, machine=board.DEFAULT):
     """[(case, shape, [(work, units, instructions)])] of Aloe in both sizes, and of TSR_DATA's pairs if asked."""
-    image = board.build("tarsier-workbench") / "tarsier-workbench.elf"
+    image = board.build("tarsier-workbench", machine=machine) / "tarsier-workbench.elf"
     with tempfile.TemporaryDirectory() as work:
         cases = pictures.aloe_cases(work) + (pictures.data_cases(work) if with_data else [])
-        found = [(name, shape, board.count_work(image, shape, folder)) for name, folder, shape in cases]
+        found = [(name, shape, board.count_work(image, shape, folder, machine=machine))
+                 for name, folder, shape in cases]
     for name, _, rows in found:
         counts = {work: count for work, _, count in rows if work in CALIBRATION_TURNS}
         if counts["calibration_2000"] - counts["calibration_1000"] != 1000:

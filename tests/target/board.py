@@ -1,4 +1,6 @@
-"""Build and run images for the Cortex-M4 board in QEMU. Not a test: what tests and benchmarks of the board share.
+"""Build and run images for boards in QEMU. Not a test: what tests and benchmarks of the boards share.
+
+The board is mps2-an386 (Cortex-M4) unless a machine is named.
 
 TSR_SOURCE is the source tree (by default the one this file is in), TSR_BUILD the host's build tree.
 
@@ -14,7 +16,10 @@ import sys
 
 SOURCE = pathlib.Path(os.environ.get("TSR_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
 HOST_BUILD = pathlib.Path(os.environ.get("TSR_BUILD", SOURCE / "build/release"))
-BOARD_BUILD = SOURCE / "build/mps2-an386"
+DEFAULT = "mps2-an386"
+M55 = "mps3-an547"
+BOARD_BUILD = SOURCE / "build" / DEFAULT
+UNITY = pathlib.Path(os.environ.get("UNITY_DIR") or SOURCE / ".deps/unity")
 MBEDTLS = pathlib.Path(os.environ.get("MBEDTLS_DIR") or SOURCE / ".deps/mbedtls")
 TOOLS = ("cmake", "ninja", "arm-none-eabi-gcc", "arm-none-eabi-nm", "qemu-system-arm", "cc")
 EXIT_SKIPPED = 77
@@ -63,29 +68,31 @@ def run(words, timeout_s=300, cwd=None):
 
 
 @contextlib.contextmanager
-def build_lock():
+def build_lock(machine=DEFAULT):
     """Tests run in parallel; one builds."""
     (SOURCE / "build").mkdir(exist_ok=True)
-    with open(SOURCE / "build/mps2-an386.lock", "w", encoding="ascii") as lock:
+    with open(SOURCE / f"build/{machine}.lock", "w", encoding="ascii") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         yield
 
 
-def build(*targets):
-    """Build the board's images (all, or some targets); the folder of the images."""
+def build(*targets, machine=DEFAULT):
+    """Build a board's images (all, or some targets); the folder of the images."""
     need_tools()
-    with build_lock():
-        if not (BOARD_BUILD / "build.ninja").exists():
-            run(["cmake", "--preset", "mps2-an386"], cwd=SOURCE)
-        words = ["cmake", "--build", BOARD_BUILD]
+    folder = SOURCE / "build" / machine
+    with build_lock(machine):
+        if not (folder / "build.ninja").exists():
+            run(["cmake", "--preset", machine], cwd=SOURCE)
+        words = ["cmake", "--build", folder]
         run(words + (["--target", *targets] if targets else []), timeout_s=600)
-    return BOARD_BUILD / "bin"
+    return folder / "bin"
 
 
 def build_plugin():
     """The instruction counter as a QEMU plugin."""
     source, library = SOURCE / "tests/target/icount.c", BOARD_BUILD / "libicount.so"
     with build_lock():
+        BOARD_BUILD.mkdir(exist_ok=True)
         if not library.exists() or library.stat().st_mtime < source.stat().st_mtime:
             run(["cc", "-O2", "-Wall", "-Wextra", "-shared", "-fPIC", "-o", library, source])
     return library
@@ -108,9 +115,9 @@ def build_host_workbench(folder):
     return program
 
 
-def run_image(image, words=(), cwd=None, timeout_s=120, options=()):
+def run_image(image, words=(), cwd=None, timeout_s=120, options=(), machine=DEFAULT):
     """Run an image to its end: exit code and console text."""
-    command = ["qemu-system-arm", "-M", "mps2-an386", "-accel", "tcg", "-display", "none", "-monitor", "none",
+    command = ["qemu-system-arm", "-M", machine, "-accel", "tcg", "-display", "none", "-monitor", "none",
                "-semihosting-config", ",".join(["enable=on", "target=native", f"arg={pathlib.Path(image).stem}",
                                                 *[f"arg={word}" for word in words]]),
                "-kernel", str(image), *map(str, options)]
@@ -131,12 +138,12 @@ def address_of(image, symbol):
     raise BoardError(f"{image}: no {symbol}")
 
 
-def count_work(image, words, cwd, timeout_s=300):
+def count_work(image, words, cwd, timeout_s=300, machine=DEFAULT):
     """Run the workbench with the counter: a list of (work, units, instructions)."""
     begin, end = (address_of(image, marker) for marker in MARKERS)
     counts = pathlib.Path(cwd) / "counts.txt"
     plugin = f"{build_plugin()},begin={begin:#x},end={end:#x},out={counts}"
-    code, text = run_image(image, words, cwd, timeout_s, ("-plugin", plugin))
+    code, text = run_image(image, words, cwd, timeout_s, ("-plugin", plugin), machine)
     if code != 0:
         raise BoardError(f"{image}: exit {code}: {text}")
     work = [line.split() for line in (pathlib.Path(cwd) / "work.txt").read_text("ascii").splitlines()]
