@@ -364,10 +364,6 @@ const struct tsr_match_kernel tsr_match_kernel_dsp = {
     .prefilter_row = tsr_dsp_prefilter_row,
     .add_row = tsr_dsp_add_row,
     .match_row = match_row,
-    .describe_row = tsr_dsp_describe_row,
-    .add_census = tsr_dsp_add_census,
-    .census_row = tsr_dsp_census_row,
-    .cost_row = tsr_dsp_cost_row,
-    .smooth_row = tsr_dsp_smooth_row,
+    TSR_MATCH_DSP_CENSUS,
 };
 #endif

@@ -12,6 +12,7 @@
  *
  * SPDX-License-Identifier: Apache-2.0
  */
+#include "match_dsp.h"
 #include "match_kernels.h"
 
 #ifdef TSR_MATCH_HAS_MVE
@@ -311,5 +312,11 @@ static void match_row(const struct tsr_match *match, unsigned y, unsigned y_new,
     tsr_mve_write_row(match, y);
 }
 
-const struct tsr_match_kernel tsr_match_kernel_mve = {"mve", tsr_mve_prefilter_row, tsr_mve_add_row, match_row};
+const struct tsr_match_kernel tsr_match_kernel_mve = {
+    .name = "mve",
+    .prefilter_row = tsr_mve_prefilter_row,
+    .add_row = tsr_mve_add_row,
+    .match_row = match_row,
+    TSR_MATCH_DSP_CENSUS,
+};
 #endif
