@@ -1,6 +1,7 @@
 /*
  * The matcher beside OpenCV's StereoBM and StereoSGBM, in one process and one
- * thread: times of every kernel, and quality on pairs with ground truth. JSON.
+ * thread: times of every kernel, bytes of every mode, and quality on pairs with
+ * ground truth. JSON.
  *
  *   match_peers PICTURE_LEFT PICTURE_RIGHT [FOLDER_OF_PAIRS]
  *
@@ -17,7 +18,9 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -40,6 +43,7 @@ struct Case {
 };
 
 constexpr Case kCases[] = {{160, 120, 32, 81}, {320, 240, 64, 41}, {640, 480, 128, 11}};
+constexpr Case kMemoryCases[] = {{160, 120, 32, 0}, {320, 240, 48, 0}, {320, 240, 64, 0}};
 
 cv::Ptr<cv::StereoBM> block_matcher(int disparities)
 {
@@ -99,44 +103,88 @@ cv::Mat reduced(const cv::Mat &picture, const Case &shape)
     return small;
 }
 
+struct Contender {
+    std::string name;
+    std::function<void()> run;
+};
+
+tsr_gray view_of(cv::Mat &picture)
+{
+    return {picture.data, static_cast<std::uint16_t>(picture.cols), static_cast<std::uint16_t>(picture.rows),
+            static_cast<std::uint16_t>(picture.step)};
+}
+
+/* One map, the copies of the views that the matcher consumes included. */
+Contender our_contender(const Case &shape, tsr_match_mode mode, const char *mode_name, const tsr_match_kernel *kernel,
+                        const cv::Mat &left, const cv::Mat &right)
+{
+    tsr_match_config config = options_of(shape, static_cast<std::uint8_t>(mode), {}).match;
+    config.kernel = kernel;
+    auto scratch = std::make_shared<std::vector<std::uint32_t>>(tsr_match_scratch_len(&config) / 4 + 1);
+    auto map = std::make_shared<std::vector<std::uint16_t>>(left.total());
+    return {std::string(tsr_match_kernel_name(kernel)) + " " + mode_name, [=] {
+                cv::Mat first = left.clone();
+                cv::Mat second = right.clone();
+                tsr_match match;
+                tsr_match_start(&match, &config, view_of(first), view_of(second), map->data(), map->size(),
+                                reinterpret_cast<std::uint8_t *>(scratch->data()), 4 * scratch->size());
+                tsr_match_run(&match, UINT16_MAX);
+            }};
+}
+
+std::vector<Contender> contenders_of(const Case &shape, const cv::Mat &left, const cv::Mat &right)
+{
+    const auto peer = [&](const std::string &name, const cv::Ptr<cv::StereoMatcher> &matcher) {
+        return Contender{name, [=] {
+                             cv::Mat disparity;
+                             matcher->compute(left, right, disparity);
+                         }};
+    };
+    std::vector<Contender> contenders = {peer("StereoBM", block_matcher(shape.disparities)),
+                                         peer("StereoSGBM", semi_global_matcher(shape.disparities))};
+    for (unsigned i = 0; tsr_match_kernel_at(i) != nullptr; i++) {
+        const bool is_portable = tsr_match_kernel_at(i + 1) == nullptr;
+        for (const auto &[mode, name] : {std::pair{TSR_MATCH_SAD, "sad"},
+                                         {TSR_MATCH_SAD8, "sad8"},
+                                         {TSR_MATCH_CENSUS, "census"},
+                                         {TSR_MATCH_SMOOTH, "smooth"}}) {
+            if (mode == TSR_MATCH_SAD || !is_portable) {
+                contenders.push_back(our_contender(shape, mode, name, tsr_match_kernel_at(i), left, right));
+            }
+        }
+    }
+    return contenders;
+}
+
 json time_case(const Case &shape, const cv::Mat &left_full, const cv::Mat &right_full)
 {
-    const cv::Mat left = reduced(left_full, shape);
-    const cv::Mat right = reduced(right_full, shape);
+    const std::vector<Contender> contenders =
+        contenders_of(shape, reduced(left_full, shape), reduced(right_full, shape));
     std::map<std::string, std::vector<double>> seconds;
-    auto peer = block_matcher(shape.disparities);
-    std::vector<std::uint16_t> map(left.total());
     for (int round = 0; round < shape.rounds; round++) {
-        cv::Mat disparity;
-        seconds["StereoBM"].push_back(seconds_of([&] { peer->compute(left, right, disparity); }));
-        for (unsigned i = 0; tsr_match_kernel_at(i) != nullptr; i++) {
-            for (const std::uint8_t mode : {TSR_MATCH_SAD, TSR_MATCH_SAD8}) {
-                tsr_match_config config = options_of(shape, mode, {}).match;
-                config.kernel = tsr_match_kernel_at(i);
-                std::vector<std::uint32_t> scratch(tsr_match_scratch_len(&config) / 4 + 1);
-                const std::string name =
-                    std::string(tsr_match_kernel_name(config.kernel)) + (mode == TSR_MATCH_SAD ? " sad" : " sad8");
-                seconds[name].push_back(seconds_of(
-                    [&] { /* the copies that it consumes included */
-                          cv::Mat first = left.clone();
-                          cv::Mat second = right.clone();
-                          const auto view = [](cv::Mat &picture) {
-                              return tsr_gray{picture.data, static_cast<std::uint16_t>(picture.cols),
-                                              static_cast<std::uint16_t>(picture.rows),
-                                              static_cast<std::uint16_t>(picture.step)};
-                          };
-                          tsr_match match;
-                          tsr_match_start(&match, &config, view(first), view(second), map.data(), map.size(),
-                                          reinterpret_cast<std::uint8_t *>(scratch.data()), 4 * scratch.size());
-                          tsr_match_run(&match, UINT16_MAX);
-                    }));
-            }
+        for (const Contender &contender : contenders) {
+            seconds[contender.name].push_back(seconds_of(contender.run));
         }
     }
     json result = {{"width", shape.width}, {"height", shape.height}, {"disparities", shape.disparities}};
     for (const auto &[name, values] : seconds) {
         result["ms"][name] = 1e3 * median_of(values);
         result["ratio"][name] = median_of(seconds["StereoBM"]) / median_of(values);
+    }
+    return result;
+}
+
+/* Both frames, the map and the scratch. */
+json memory_case(const Case &shape)
+{
+    json result = {{"width", shape.width}, {"height", shape.height}, {"disparities", shape.disparities}};
+    for (const auto &[mode, name] : {std::pair{TSR_MATCH_SAD, "sad"},
+                                     {TSR_MATCH_CENSUS, "census"},
+                                     {TSR_MATCH_SMOOTH, "smooth"},
+                                     {TSR_MATCH_RAW, "raw"},
+                                     {TSR_MATCH_SSD, "ssd"}}) {
+        const tsr_match_config config = options_of(shape, static_cast<std::uint8_t>(mode), {}).match;
+        result["bytes"][name] = tsr_match_pair_len(&config) + tsr_match_scratch_len(&config);
     }
     return result;
 }
@@ -255,6 +303,9 @@ int main(int argc, char **argv)
     json result = {{"times", json::array()}, {"quality", json::array()}};
     for (const Case &shape : kCases) {
         result["times"].push_back(time_case(shape, left, right));
+    }
+    for (const Case &shape : kMemoryCases) {
+        result["memory"].push_back(memory_case(shape));
     }
     if (argc == 4) {
         std::vector<std::filesystem::path> folders;
