@@ -17,8 +17,7 @@ const struct tsr_match_kernel tsr_match_kernel_portable = {"portable", tsr_match
 #if defined(TSR_MATCH_HAS_X86)
 static bool has_avx2(void)
 {
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") &&
-           __builtin_cpu_supports("popcnt");
+    return __builtin_cpu_supports("avx2") != 0;
 }
 #endif
 
@@ -26,15 +25,16 @@ static bool has_avx2(void)
 static const struct {
     const struct tsr_match_kernel *kernel;
     bool (*is_supported)(void);
+    bool is_complete; /* covers search_start_px < 0 */
 } kernels[] = {
 #if defined(TSR_MATCH_HAS_DSP)
-    {&tsr_match_kernel_dsp, NULL},
+    {&tsr_match_kernel_dsp, NULL, false},
 #endif
 #if defined(TSR_MATCH_HAS_X86)
-    {&tsr_match_kernel_avx2, has_avx2},
-    {&tsr_match_kernel_sse2, NULL},
+    {&tsr_match_kernel_avx2, has_avx2, true},
+    {&tsr_match_kernel_sse2, NULL, true},
 #endif
-    {&tsr_match_kernel_portable, NULL},
+    {&tsr_match_kernel_portable, NULL, true},
 };
 
 const struct tsr_match_kernel *tsr_match_kernel_at(unsigned index)
@@ -46,6 +46,16 @@ const struct tsr_match_kernel *tsr_match_kernel_at(unsigned index)
         }
     }
     return NULL;
+}
+
+const struct tsr_match_kernel *tsr_match_kernel_for(const struct tsr_match_config *config)
+{
+    for (unsigned i = 0; i < sizeof kernels / sizeof kernels[0]; i++) {
+        if (kernels[i].kernel == config->kernel && (kernels[i].is_complete || config->search_start_px >= 0)) {
+            return config->kernel;
+        }
+    }
+    return &tsr_match_kernel_portable;
 }
 
 const char *tsr_match_kernel_name(const struct tsr_match_kernel *kernel)

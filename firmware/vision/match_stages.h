@@ -60,6 +60,9 @@ struct tsr_match_kernel {
 
 extern const struct tsr_match_kernel tsr_match_kernel_portable;
 
+/* The kernel of a resolved configuration, or the portable one where that does not cover it. */
+const struct tsr_match_kernel *tsr_match_kernel_for(const struct tsr_match_config *config);
+
 /* The portable kernel in pieces. */
 void tsr_match_prefilter_row(const struct tsr_match *match, unsigned y);
 void tsr_match_add_row(const struct tsr_match *match, unsigned y, unsigned times);

@@ -1,0 +1,133 @@
+/*
+ * The matcher's kernels in vectors over disparities, for any instruction set
+ * with the operations of vector_sse2.h; a source file includes them first.
+ *
+ *     match_vector.h            what a row is made from; warm-up rows
+ *     match_vector_sums.h       window sums and their least, in 16 bits
+ *     match_vector_sums8.h      the same in 8, for TSR_MATCH_SAD8
+ *     match_vector_choose.h     tests, offset, and the row of the map
+ *     match_vector_prefilter.h
+ *
+ * A row of the right picture is copied with its ends repeated as far as any lane
+ * of any pixel reaches, so that no lane is a special case: eq. (11).
+ *
+ * A column has D bytes while vectors may end behind it. Columns are moved in
+ * ascending order and the first vector of the next one is loaded before this one
+ * is stored, so bytes behind a column may be overwritten: those of the last one
+ * are what the portable kernel uses for claims.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_VISION_MATCH_VECTOR_H
+#define TSR_VISION_MATCH_VECTOR_H
+
+#include <stdbool.h>
+#include <string.h>
+
+#include "match_kernels.h"
+
+#define VECTORS_MAX (TSR_DISPARITY_COUNT_MAX / VECTOR_LEN)
+#define LANES16 (VECTOR_LEN / 2u)
+/* Pixels of a row in whole vectors, with one to spare. */
+#define PIXELS_MAX (TSR_IMAGE_WIDTH_MAX + 2u * VECTOR_LEN)
+#define LANES_MAX (TSR_IMAGE_WIDTH_MAX + TSR_DISPARITY_COUNT_MAX + VECTOR_LEN)
+
+/* The right pixels that lanes meet, ascending with d, descending with x. */
+struct right_lanes {
+    _Alignas(32) uint8_t bytes[2u * LANES_MAX];
+};
+
+/* What a row of sums is made from. */
+struct row_input {
+    const uint8_t *left_new;
+    const uint8_t *left_old;
+    const uint8_t *right_new; /* lane 0 of pixel 0 */
+    const uint8_t *right_old;
+    uint8_t *columns;
+    unsigned width;
+    unsigned disparities;
+    unsigned radius;
+    int start;
+};
+
+/* What is found out about the pixels of a row, one number each. */
+struct winners {
+    _Alignas(32) int16_t sum[PIXELS_MAX]; /* 16 S, or less than 0 where nothing may be chosen; low bits undefined */
+    _Alignas(32) int16_t d[PIXELS_MAX];
+    _Alignas(32) int16_t below[PIXELS_MAX]; /* 16 S - 2^15 of d - 1, of d + 1; not negative if not to be chosen */
+    _Alignas(32) int16_t above[PIXELS_MAX];
+    _Alignas(32) int16_t bound[PIXELS_MAX]; /* what sums are below that eq. (15) counts */
+    _Alignas(32) int16_t count[PIXELS_MAX]; /* how many are */
+};
+
+/* Columns start at a multiple of VECTOR_LEN: there is room for sums in front of them that vectors do not use. */
+INLINE uint8_t *columns_of(const struct tsr_match *match)
+{
+    uint8_t *columns = tsr_match_share_scratch(match).columns;
+    return columns - (uintptr_t)columns % VECTOR_LEN;
+}
+_Static_assert(4u * TSR_MATCH_DISPARITIES_MIN >= 32u, "room in front of the columns");
+
+/* Whether columns and right pixels lie in pairs of lanes, ready to be widened. */
+INLINE bool has_pairs(const struct tsr_match_config *config)
+{
+    return LANE_PAIR > 1u && config->disparities % VECTOR_LEN == 0;
+}
+
+/* The mirrored row from pixel start on, with its ends repeated. */
+static void clip_row(const uint8_t *row, unsigned width, int start, uint8_t *clipped, size_t count)
+{
+    size_t before = start < 0 ? (size_t)-start : 0u;
+    size_t from = start < 0 ? 0u : (size_t)start;
+    size_t inside = width - from < count - before ? width - from : count - before;
+    memset(clipped, row[0], before);
+    memcpy(clipped + before, row + from, inside);
+    memset(clipped + before + inside, row[width - 1u], count - before - inside);
+}
+
+/* Returns lane 0 of pixel 0; pixels step by 2 bytes where lanes are paired. */
+static const uint8_t *lay_out_right(const struct tsr_match *match, unsigned y, bool paired, struct right_lanes *lanes)
+{
+    const struct tsr_match_config *config = &match->config;
+    const uint8_t *row = match->right.pixels + (size_t)y * match->right.stride;
+    size_t count = config->width + config->disparities + VECTOR_LEN;
+    if (!paired) {
+        clip_row(row, config->width, config->search_start_px, lanes->bytes, count);
+        return lanes->bytes + (config->width - 1u);
+    }
+    uint8_t clipped[LANES_MAX + LANE_PAIR];
+    clip_row(row, config->width, config->search_start_px, clipped, count + LANE_PAIR);
+    for (size_t i = 0; i < count; i++) {
+        lanes->bytes[2u * i] = clipped[i];
+        lanes->bytes[2u * i + 1u] = clipped[i + LANE_PAIR];
+    }
+    return lanes->bytes + 2u * (config->width - 1u);
+}
+
+/* Column sums times + one more row. */
+static void add_row(const struct tsr_match *match, unsigned y, unsigned times, bool paired)
+{
+    const struct tsr_match_config *config = &match->config;
+    const uint8_t *left = match->left.pixels + (size_t)y * match->left.stride;
+    struct right_lanes lanes;
+    const uint8_t *right = lay_out_right(match, y, paired, &lanes);
+    uint8_t *column = columns_of(match);
+    vec8 first = load8(column);
+    for (unsigned x = 0; x < config->width; x++) {
+        vec8 probe = probe4(left[x]);
+        vec8 next = load8(column + config->disparities);
+        for (unsigned d = 0; d < config->disparities; d += VECTOR_LEN) {
+            vec8 sums = d == 0 ? first : load8(column + d);
+            vec8 added = probe_difference4(probe, load8(right + (paired ? 2u : 1u) * d));
+            for (unsigned i = 0; i < times; i++) {
+                sums = add8(sums, added);
+            }
+            store8(column + d, sums);
+        }
+        first = next;
+        column += config->disparities;
+        right -= paired ? 2 : 1;
+    }
+}
+
+#endif

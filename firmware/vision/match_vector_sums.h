@@ -1,0 +1,250 @@
+/*
+ * Window sums of a row in vectors of 16-bit keys, and the least of each pixel.
+ *
+ *     key = 16 S(x,y,d) + d / 8 - 2^15     where d is a candidate of pixel x
+ *           16 S(x,y,d) + d / 8            where it is not
+ *
+ * S is at most 1890, so candidates have negative keys and no other lane wins or
+ * comes near a bound. A pixel moves all keys by the column that enters the window
+ * and the one that leaves it; lane d changes sides at x = s + d and s + d + W.
+ * The least key of all vectors, lane by lane modulo 8, says d / 8, and the
+ * lane says d % 8; the lowest d of equal sums is found first.
+ *
+ * Keys of a block of pixels are kept until the bounds of eq. (15) are known, so
+ * that no pixel waits for its own least key.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_VISION_MATCH_VECTOR_SUMS_H
+#define TSR_VISION_MATCH_VECTOR_SUMS_H
+
+#include "match_vector.h"
+
+#define BLOCK 16u
+#define KEY_PAD 16u /* lanes before and behind a pixel's keys; candidates of none */
+#define KEYS_MAX (KEY_PAD + BLOCK * (TSR_DISPARITY_COUNT_MAX + KEY_PAD))
+
+/* Keys of the last pixel in registers, where the count of vectors is small enough for that. */
+struct held_keys {
+    vec16 keys[2u * VECTORS_MAX];
+};
+
+/* What makes the difference between code for one D and another: constants where it is used. */
+struct shape {
+    unsigned vectors;
+    bool excess; /* the last vector ends behind the last disparity */
+    bool held;
+};
+
+INLINE int16_t *keys_at(int16_t *block, struct shape shape, unsigned pixel)
+{
+    return block + KEY_PAD + pixel * (shape.vectors * VECTOR_LEN + KEY_PAD);
+}
+
+INLINE unsigned lane_step(struct shape shape)
+{
+    return LANE_PAIR > 1u && !shape.excess ? 2u : 1u;
+}
+
+/* As it widens: the end of a column that does not fill its last vector would not be one with its lanes in pairs. */
+INLINE vec8 paired(vec8 column, struct shape shape)
+{
+    return shape.excess ? pair_lanes(column) : column;
+}
+
+/* The column that enters, moved down. first: its first vector, and on return that of the next column. */
+INLINE void move_column(const struct row_input *input, struct shape shape, unsigned x, vec8 *first, vec8 *column)
+{
+    uint8_t *at = input->columns + (size_t)x * input->disparities;
+    const uint8_t *right_new = input->right_new - x * lane_step(shape);
+    const uint8_t *right_old = input->right_old - x * lane_step(shape);
+    vec8 probe_new = probe4(input->left_new[x]);
+    vec8 probe_old = probe4(input->left_old[x]);
+    vec8 next = *first;
+    if (shape.excess) {
+        next = load8(at + input->disparities);
+    }
+    for (unsigned i = 0; i < shape.vectors; i++) {
+        unsigned d = i * VECTOR_LEN;
+        unsigned lane = d * lane_step(shape);
+        vec8 added = probe_difference4(probe_new, load8(right_new + lane));
+        vec8 taken = probe_difference4(probe_old, load8(right_old + lane));
+        vec8 sums = shape.excess && i == 0 ? *first : load8(at + d);
+        column[i] = add8(sums, subtract8(added, taken));
+        store8(at + d, column[i]);
+    }
+    *first = next;
+}
+
+/* Bytes before and behind the last column's first vector are not touched by its last. */
+INLINE void repeat_column(const struct row_input *input, struct shape shape, vec8 *column)
+{
+    const uint8_t *at = input->columns + (size_t)(input->width - 1u) * input->disparities;
+    for (unsigned i = 0; i < shape.vectors; i++) {
+        column[i] = load8(at + i * VECTOR_LEN);
+    }
+}
+
+/* Lanes behind the last disparity hold anything; without their sign they are no candidates. */
+INLINE vec16 mask_excess(vec16 keys, struct shape shape, unsigned vector, unsigned disparities)
+{
+#define EIGHT(n) n, n, n, n, n, n, n, n
+    static const _Alignas(32)
+        int16_t keep[64] = {EIGHT(-1),        EIGHT(-1),        EIGHT(-1),        EIGHT(-1),
+                            EIGHT(INT16_MAX), EIGHT(INT16_MAX), EIGHT(INT16_MAX), EIGHT(INT16_MAX)};
+#undef EIGHT
+    unsigned first = vector * LANES16;
+    if (!shape.excess || vector + 2u < 2u * shape.vectors) {
+        return keys;
+    }
+    return and16(keys, load16(keep + 32u + first - disparities));
+}
+
+/* Keys of a pixel from those of the pixel before. */
+INLINE void slide_window(const struct row_input *input, struct shape shape, const vec8 *column, const uint8_t *leave,
+                         struct held_keys *held, const int16_t *before, int16_t *keys, vec16 *least)
+{
+    vec16 least_first = splat16(INT16_MAX);
+    vec16 least_second = splat16(INT16_MAX);
+    for (unsigned i = 0; i < shape.vectors; i++) {
+        vec8 change = paired(subtract8(column[i], load8(leave + i * VECTOR_LEN)), shape);
+        const int16_t *at = before + i * VECTOR_LEN;
+        vec16 first = shape.held ? held->keys[2u * i] : load16(at);
+        vec16 second = shape.held ? held->keys[2u * i + 1u] : load16(at + LANES16);
+        first = mask_excess(add16(first, first_times16(change)), shape, 2u * i, input->disparities);
+        second = mask_excess(add16(second, second_times16(change)), shape, 2u * i + 1u, input->disparities);
+        if (shape.held) {
+            held->keys[2u * i] = first;
+            held->keys[2u * i + 1u] = second;
+        }
+        store16(keys + i * VECTOR_LEN, first);
+        store16(keys + i * VECTOR_LEN + LANES16, second);
+        least_first = min16(least_first, first);
+        least_second = min16(least_second, second);
+    }
+    *least = min16(least_first, least_second);
+}
+
+/* Lane d becomes a candidate, or ceases to be one. Returns the keys of the pixel before, so changed. */
+INLINE const int16_t *toggle_lane(struct shape shape, unsigned d, struct held_keys *held, const int16_t *before,
+                                  int16_t *changed)
+{
+    static const _Alignas(32) int16_t toggles[2u * TSR_DISPARITY_COUNT_MAX] = {[TSR_DISPARITY_COUNT_MAX] = INT16_MIN};
+    const int16_t *toggle = toggles + TSR_DISPARITY_COUNT_MAX - d;
+    for (unsigned i = 0; i < 2u * shape.vectors; i++) {
+        vec16 keys = shape.held ? held->keys[i] : load16(before + i * LANES16);
+        keys = xor16(keys, load16(toggle + i * LANES16));
+        if (shape.held) {
+            held->keys[i] = keys;
+        } else {
+            store16(changed + i * LANES16, keys);
+        }
+    }
+    return shape.held ? before : changed;
+}
+
+/* The keys one pixel left of the row: column 0 radius + 2 times, 1 .. radius - 1 once. */
+INLINE void begin_keys(const struct row_input *input, struct shape shape, struct held_keys *held, int16_t *keys)
+{
+    for (unsigned d = 0; d < shape.vectors * VECTOR_LEN; d++) {
+        bool is_candidate = (int)d < -input->start && d < input->disparities;
+        keys[d] = (int16_t)((int)(d / 8u) + (is_candidate ? INT16_MIN : 0));
+    }
+    for (unsigned i = 0; i < shape.vectors; i++) {
+        const uint8_t *column = input->columns + i * VECTOR_LEN;
+        vec16 times = splat16((int16_t)(input->radius + 2u));
+        vec16 first = multiply16(first_times16(paired(load8(column), shape)), times);
+        vec16 second = multiply16(second_times16(paired(load8(column), shape)), times);
+        for (unsigned x = 1; x < input->radius; x++) {
+            vec8 sums = paired(load8(column + (size_t)x * input->disparities), shape);
+            first = add16(first, first_times16(sums));
+            second = add16(second, second_times16(sums));
+        }
+        int16_t *at = keys + i * VECTOR_LEN;
+        held->keys[2u * i] = add16(first, load16(at));
+        held->keys[2u * i + 1u] = add16(second, load16(at + LANES16));
+        store16(at, held->keys[2u * i]);
+        store16(at + LANES16, held->keys[2u * i + 1u]);
+    }
+}
+
+/* d, and what other sums are not to reach: floor(S (100 + percent) / 100), which eq. (15) compares with. */
+INLINE void find_bounds(struct winners *winners, unsigned from, unsigned percent)
+{
+    uint32_t scale = ((uint32_t)percent << 18) / 100u + 1u;
+    for (unsigned x = from; x < from + BLOCK; x += LANES16) {
+        vec16 found = load16(winners->sum + x);
+        vec16 group = SHIFT_LEFT16(and16(found, splat16(15)), 3);
+        store16(winners->d + x, or16(group, load16(winners->d + x)));
+        vec16 sum = SHIFT_RIGHT_UNSIGNED16(found, 4);
+        vec16 more = add16(multiply_high16(sum, splat16((int16_t)(uint16_t)scale)),
+                           multiply16(sum, splat16((int16_t)(scale >> 16))));
+        vec16 limit = add16(sum, SHIFT_RIGHT_UNSIGNED16(more, 2));
+        limit = min16(limit, splat16(INT16_MAX / 16)); /* no sum lies above */
+        store16(winners->bound + x, xor16(SHIFT_LEFT16(add16(limit, splat16(1)), 4), splat16(INT16_MIN)));
+    }
+}
+
+INLINE void count_within(struct shape shape, int16_t *block, unsigned from, unsigned count, struct winners *winners)
+{
+    for (unsigned i = 0; i < count; i++) {
+        const int16_t *keys = keys_at(block, shape, i);
+        unsigned x = from + i;
+        vec16 bound = splat16(winners->bound[x]);
+        vec8 within = splat8(0);
+        for (unsigned j = 0; j < shape.vectors; j++) {
+            vec16 first = above16(bound, load16(keys + j * VECTOR_LEN));
+            vec16 second = above16(bound, load16(keys + j * VECTOR_LEN + LANES16));
+            within = subtract8(within, join8(first, second));
+        }
+        const int16_t *own = keys + winners->d[x];
+        winners->count[x] = (int16_t)total8(within);
+        winners->below[x] = own[-1];
+        winners->above[x] = own[1];
+    }
+}
+
+/* The columns moved, and what is known of every pixel then. */
+INLINE void find_winners(const struct row_input *input, struct shape shape, unsigned percent, struct winners *winners)
+{
+    _Alignas(32) int16_t block[KEYS_MAX];
+    struct held_keys held;
+    for (unsigned i = 0; i <= BLOCK; i++) {
+        memset(keys_at(block, shape, i) - KEY_PAD, 0, KEY_PAD * sizeof *block);
+    }
+    vec8 column[VECTORS_MAX];
+    vec8 first = load8(input->columns);
+    for (unsigned x = 0; x < input->radius; x++) {
+        move_column(input, shape, x, &first, column);
+    }
+    begin_keys(input, shape, &held, keys_at(block, shape, BLOCK - 1u));
+    for (unsigned from = 0; from < input->width; from += BLOCK) {
+        unsigned count = input->width - from < BLOCK ? input->width - from : BLOCK;
+        const int16_t *before = keys_at(block, shape, BLOCK - 1u);
+        for (unsigned i = 0; i < count; i++) {
+            unsigned x = from + i;
+            _Alignas(32) int16_t changed[TSR_DISPARITY_COUNT_MAX];
+            if (x + input->radius < input->width) {
+                move_column(input, shape, x + input->radius, &first, column);
+            } else {
+                repeat_column(input, shape, column);
+            }
+            unsigned lane = x - (unsigned)input->start;
+            lane = lane < input->width ? lane : lane - input->width;
+            if (lane < input->disparities) {
+                before = toggle_lane(shape, lane, &held, before, changed);
+            }
+            unsigned left = x > input->radius ? x - input->radius - 1u : 0u;
+            int16_t *keys = keys_at(block, shape, i);
+            vec16 least;
+            slide_window(input, shape, column, input->columns + (size_t)left * input->disparities, &held, before, keys,
+                         &least);
+            find_least16(least, winners->sum + x, winners->d + x);
+            before = keys;
+        }
+        find_bounds(winners, from, percent);
+        count_within(shape, block, from, count, winners);
+    }
+}
+
+#endif

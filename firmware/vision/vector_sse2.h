@@ -1,0 +1,243 @@
+/*
+ * Vectors of 16 bytes on x86-64, whose SSE2 every one has: the operations that
+ * the kernels in vectors are written in. vector_avx2.h and vector_neon.h give
+ * the same ones; a source file includes one of them.
+ *
+ *   VECTOR_LEN, vec8, vec16      bytes in a vector; of uint8_t, of int16_t
+ *   load8 store8 load16 store16  no alignment is asked for
+ *   load_wide(at)                VECTOR_LEN / 2 bytes, widened
+ *   narrow(low, high)            bytes again, saturated at 0 and 255
+ *   splat8 splat16 reverse8
+ *   add8 subtract8 and8 or8 add16 subtract16 multiply16 (low half) min16 max16
+ *   and16 or16 xor16 SHIFT_...16
+ *   multiply_high16(a, b)        the high half, of unsigned numbers
+ *   difference8(a, b)            |a - b|, unsigned
+ *   above8 above16(a, b)         lanes of ones where a > b, signed; equal16
+ *   join8(low, high)             16-bit lanes of ones or zeros as bytes, in any order
+ *   total8(a)                    the sum of all bytes, modulo 2^16 at least
+ *   probe4(n), probe_difference4(p, a)   |n - a| of nibbles in bytes
+ *   pair_lanes(a)                lanes in order to the order of LANE_PAIR
+ *   first_times16, second_times16(a)     16 times the bytes with a sign
+ *   zip_low8, zip_high8(a, b)    b << 8 | a; which lanes, only the two together say
+ *   find_least16(a, &least, &lane)       the least lane, plus 2^15, and the first
+ *                                lane modulo 8 that has it
+ *
+ * Where lanes are widened a vector of bytes becomes two: lanes first to
+ * first + VECTOR_LEN / 2 - 1 and the others. With LANE_PAIR = 1 they are lanes in
+ * order; otherwise bytes 2 i and 2 i + 1 hold lanes i and i + LANE_PAIR.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_VISION_VECTOR_SSE2_H
+#define TSR_VISION_VECTOR_SSE2_H
+
+#include <emmintrin.h>
+#include <stdint.h>
+
+#define INLINE static inline __attribute__((always_inline))
+#define VECTOR_LEN 16u
+#define LANE_PAIR 1u
+typedef __m128i vec8;
+typedef __m128i vec16;
+
+INLINE vec8 load8(const uint8_t *at)
+{
+    return _mm_loadu_si128((const __m128i *)(const void *)at);
+}
+
+INLINE void store8(uint8_t *at, vec8 a)
+{
+    _mm_storeu_si128((__m128i *)(void *)at, a);
+}
+
+INLINE vec16 load16(const int16_t *at)
+{
+    return _mm_loadu_si128((const __m128i *)(const void *)at);
+}
+
+INLINE void store16(int16_t *at, vec16 a)
+{
+    _mm_storeu_si128((__m128i *)(void *)at, a);
+}
+
+INLINE vec16 load_wide(const uint8_t *at)
+{
+    return _mm_unpacklo_epi8(_mm_loadl_epi64((const __m128i *)(const void *)at), _mm_setzero_si128());
+}
+
+INLINE vec8 narrow(vec16 low, vec16 high)
+{
+    return _mm_packus_epi16(low, high);
+}
+
+INLINE vec8 reverse8(vec8 a)
+{
+    a = _mm_or_si128(_mm_slli_epi16(a, 8), _mm_srli_epi16(a, 8));
+    a = _mm_shufflehi_epi16(_mm_shufflelo_epi16(a, _MM_SHUFFLE(0, 1, 2, 3)), _MM_SHUFFLE(0, 1, 2, 3));
+    return _mm_shuffle_epi32(a, _MM_SHUFFLE(1, 0, 3, 2));
+}
+
+INLINE vec8 splat8(uint8_t a)
+{
+    return _mm_set1_epi8((char)a);
+}
+
+INLINE vec16 splat16(int16_t a)
+{
+    return _mm_set1_epi16(a);
+}
+
+INLINE vec8 add8(vec8 a, vec8 b)
+{
+    return _mm_add_epi8(a, b);
+}
+
+INLINE vec8 subtract8(vec8 a, vec8 b)
+{
+    return _mm_sub_epi8(a, b);
+}
+
+INLINE vec8 and8(vec8 a, vec8 b)
+{
+    return _mm_and_si128(a, b);
+}
+
+INLINE vec8 or8(vec8 a, vec8 b)
+{
+    return _mm_or_si128(a, b);
+}
+
+INLINE vec8 difference8(vec8 a, vec8 b)
+{
+    return _mm_sub_epi8(_mm_max_epu8(a, b), _mm_min_epu8(a, b));
+}
+
+INLINE vec8 above8(vec8 a, vec8 b)
+{
+    return _mm_cmpgt_epi8(a, b);
+}
+
+INLINE unsigned total8(vec8 a)
+{
+    __m128i halves = _mm_sad_epu8(a, _mm_setzero_si128());
+    return (unsigned)(_mm_cvtsi128_si32(halves) + _mm_extract_epi16(halves, 4));
+}
+
+INLINE vec8 probe4(uint8_t nibble)
+{
+    static const _Alignas(16) uint64_t splats[16][2] = {
+#define SPLAT(n) {n * UINT64_C(0x0101010101010101), n * UINT64_C(0x0101010101010101)}
+        SPLAT(0), SPLAT(1), SPLAT(2),  SPLAT(3),  SPLAT(4),  SPLAT(5),  SPLAT(6),  SPLAT(7),
+        SPLAT(8), SPLAT(9), SPLAT(10), SPLAT(11), SPLAT(12), SPLAT(13), SPLAT(14), SPLAT(15),
+#undef SPLAT
+    };
+    return _mm_load_si128((const __m128i *)(const void *)splats[nibble]);
+}
+
+INLINE vec8 probe_difference4(vec8 probe, vec8 nibbles)
+{
+    return difference8(probe, nibbles);
+}
+
+INLINE vec8 pair_lanes(vec8 a)
+{
+    return a;
+}
+
+INLINE vec16 first_times16(vec8 a)
+{
+    return _mm_srai_epi16(_mm_unpacklo_epi8(_mm_setzero_si128(), a), 4);
+}
+
+INLINE vec16 second_times16(vec8 a)
+{
+    return _mm_srai_epi16(_mm_unpackhi_epi8(_mm_setzero_si128(), a), 4);
+}
+
+INLINE vec8 join8(vec16 low, vec16 high)
+{
+    return _mm_packs_epi16(low, high);
+}
+
+INLINE vec16 zip_low8(vec8 a, vec8 b)
+{
+    return _mm_unpacklo_epi8(a, b);
+}
+
+INLINE vec16 zip_high8(vec8 a, vec8 b)
+{
+    return _mm_unpackhi_epi8(a, b);
+}
+
+INLINE vec16 add16(vec16 a, vec16 b)
+{
+    return _mm_add_epi16(a, b);
+}
+
+INLINE vec16 subtract16(vec16 a, vec16 b)
+{
+    return _mm_sub_epi16(a, b);
+}
+
+INLINE vec16 multiply16(vec16 a, vec16 b)
+{
+    return _mm_mullo_epi16(a, b);
+}
+
+INLINE vec16 multiply_high16(vec16 a, vec16 b)
+{
+    return _mm_mulhi_epu16(a, b);
+}
+
+INLINE vec16 min16(vec16 a, vec16 b)
+{
+    return _mm_min_epi16(a, b);
+}
+
+INLINE vec16 max16(vec16 a, vec16 b)
+{
+    return _mm_max_epi16(a, b);
+}
+
+INLINE vec16 above16(vec16 a, vec16 b)
+{
+    return _mm_cmpgt_epi16(a, b);
+}
+
+INLINE vec16 equal16(vec16 a, vec16 b)
+{
+    return _mm_cmpeq_epi16(a, b);
+}
+
+INLINE vec16 and16(vec16 a, vec16 b)
+{
+    return _mm_and_si128(a, b);
+}
+
+INLINE vec16 or16(vec16 a, vec16 b)
+{
+    return _mm_or_si128(a, b);
+}
+
+INLINE vec16 xor16(vec16 a, vec16 b)
+{
+    return _mm_xor_si128(a, b);
+}
+
+#define SHIFT_LEFT16(a, n) _mm_slli_epi16(a, n)
+#define SHIFT_RIGHT16(a, n) _mm_srai_epi16(a, n)
+#define SHIFT_RIGHT_UNSIGNED16(a, n) _mm_srli_epi16(a, n)
+
+/* The least in every lane, by rotations; its first lane from a mask of two bits per lane. */
+INLINE void find_least16(vec16 a, int16_t *least_flipped, int16_t *lane)
+{
+    __m128i least = _mm_min_epi16(a, _mm_shuffle_epi32(a, _MM_SHUFFLE(1, 0, 3, 2)));
+    least = _mm_min_epi16(least, _mm_shuffle_epi32(least, _MM_SHUFFLE(2, 3, 0, 1)));
+    least = _mm_min_epi16(
+        least, _mm_shufflehi_epi16(_mm_shufflelo_epi16(least, _MM_SHUFFLE(2, 3, 0, 1)), _MM_SHUFFLE(2, 3, 0, 1)));
+    unsigned where = (unsigned)_mm_movemask_epi8(_mm_cmpeq_epi16(a, least));
+    *least_flipped = (int16_t)(_mm_cvtsi128_si32(least) ^ INT16_MIN);
+    *lane = (int16_t)(__builtin_ctz(where) / 2);
+}
+
+#endif
