@@ -17,6 +17,7 @@ struct verdicts {
 struct choices {
     _Alignas(32) int16_t values[PIXELS_MAX]; /* what the map holds unless eq. (17) fails */
     _Alignas(32) int16_t claims[PIXELS_MAX];
+    _Alignas(32) int16_t rights[PIXELS_MAX]; /* the right pixel */
 };
 
 /* Column sums of |P_left - cap| moved down, padded with the ends repeated. */
@@ -83,6 +84,8 @@ static void choose(const struct tsr_match_config *config, const struct winners *
 {
     bool unique_off = config->uniqueness_percent == TSR_MATCH_TEST_OFF;
     vec16 one = splat16(1);
+    static const _Alignas(32) int16_t counting[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    vec16 right = subtract16(load16(counting), splat16(config->search_start_px)); /* of d = 0 */
     for (unsigned x = 0; x < config->width; x += LANES16) {
         vec16 d = load16(winners->d + x);
         vec16 found = load16(winners->sum + x);
@@ -99,6 +102,8 @@ static void choose(const struct tsr_match_config *config, const struct winners *
         valid = and16(valid, load16(verdicts->textured + x));
         valid = and16(valid, above16(found, splat16(-1)));
         store16(choices->values + x, or16(value, xor16(valid, splat16(-1))));
+        store16(choices->rights + x, subtract16(right, d));
+        right = add16(right, splat16(LANES16));
         store16(choices->claims + x, or16(SHIFT_LEFT16(SHIFT_RIGHT16(sum, 2), 7), d));
     }
 }
@@ -118,20 +123,19 @@ static struct searching find_searching(const struct tsr_match_config *config)
 }
 
 /* Of every pixel the claim that holds of the right pixel it claims: eq. (17). */
-static void find_claims(const struct tsr_match_config *config, const int16_t *disparities, const int16_t *claims,
+static void find_claims(const struct tsr_match_config *config, const uint16_t *rights, const int16_t *claims,
                         int16_t *holding)
 {
     uint16_t held[TSR_IMAGE_WIDTH_MAX];
     memset(held, 0xff, config->width * sizeof *held);
     struct searching searching = find_searching(config);
-    uint16_t *right = held - config->search_start_px;
-    for (unsigned x = searching.first; x < searching.end; x++) {
-        uint16_t *at = right + (ptrdiff_t)x - disparities[x];
+    for (size_t x = searching.first; x < searching.end; x++) {
+        uint16_t *at = held + rights[x];
         uint16_t claim = (uint16_t)claims[x];
         *at = claim < *at ? claim : *at;
     }
-    for (unsigned x = searching.first; x < searching.end; x++) {
-        holding[x] = (int16_t)right[(ptrdiff_t)x - disparities[x]];
+    for (size_t x = searching.first; x < searching.end; x++) {
+        holding[x] = (int16_t)held[rights[x]];
     }
 }
 
@@ -140,7 +144,7 @@ static void write_row(const struct tsr_match *match, unsigned y, const struct wi
     const struct tsr_match_config *config = &match->config;
     if (config->lr_tolerance_px != TSR_MATCH_TEST_OFF) {
         _Alignas(32) int16_t holding[PIXELS_MAX];
-        find_claims(config, winners->d, choices->claims, holding);
+        find_claims(config, (const uint16_t *)choices->rights, choices->claims, holding);
         vec16 tolerance = splat16(config->lr_tolerance_px);
         for (unsigned x = 0; x < config->width; x += LANES16) {
             vec16 apart = subtract16(and16(load16(holding + x), splat16(127)), load16(winners->d + x));

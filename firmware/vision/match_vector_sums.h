@@ -41,6 +41,17 @@ INLINE int16_t *keys_at(int16_t *block, struct shape shape, unsigned pixel)
     return block + KEY_PAD + pixel * (shape.vectors * VECTOR_LEN + KEY_PAD);
 }
 
+/* Where the columns are that enter and leave. */
+struct cursor {
+    const uint8_t *left_new;
+    const uint8_t *left_old;
+    const uint8_t *right_new;
+    const uint8_t *right_old;
+    uint8_t *enter;
+    const uint8_t *leave;
+    vec8 first; /* of the column that enters, where shape.excess */
+};
+
 INLINE unsigned lane_step(struct shape shape)
 {
     return LANE_PAIR > 1u && !shape.excess ? 2u : 1u;
@@ -52,36 +63,33 @@ INLINE vec8 paired(vec8 column, struct shape shape)
     return shape.excess ? pair_lanes(column) : column;
 }
 
-/* The column that enters, moved down. first: its first vector, and on return that of the next column. */
-INLINE void move_column(const struct row_input *input, struct shape shape, unsigned x, vec8 *first, vec8 *column)
+/* The column that enters, moved down. */
+INLINE void move_column(const struct row_input *input, struct shape shape, struct cursor *at, vec8 *column)
 {
-    uint8_t *at = input->columns + (size_t)x * input->disparities;
-    const uint8_t *right_new = input->right_new - x * lane_step(shape);
-    const uint8_t *right_old = input->right_old - x * lane_step(shape);
-    vec8 probe_new = probe4(input->left_new[x]);
-    vec8 probe_old = probe4(input->left_old[x]);
-    vec8 next = *first;
-    if (shape.excess) {
-        next = load8(at + input->disparities);
-    }
+    vec8 probe_new = probe4(*at->left_new);
+    vec8 probe_old = probe4(*at->left_old);
+    vec8 next = shape.excess ? load8(at->enter + input->disparities) : at->first;
     for (unsigned i = 0; i < shape.vectors; i++) {
         unsigned d = i * VECTOR_LEN;
-        unsigned lane = d * lane_step(shape);
-        vec8 added = probe_difference4(probe_new, load8(right_new + lane));
-        vec8 taken = probe_difference4(probe_old, load8(right_old + lane));
-        vec8 sums = shape.excess && i == 0 ? *first : load8(at + d);
+        vec8 added = probe_difference4(probe_new, load8(at->right_new + d * lane_step(shape)));
+        vec8 taken = probe_difference4(probe_old, load8(at->right_old + d * lane_step(shape)));
+        vec8 sums = shape.excess && i == 0 ? at->first : load8(at->enter + d);
         column[i] = add8(sums, subtract8(added, taken));
-        store8(at + d, column[i]);
+        store8(at->enter + d, column[i]);
     }
-    *first = next;
+    at->first = next;
+    at->left_new++;
+    at->left_old++;
+    at->right_new -= lane_step(shape);
+    at->right_old -= lane_step(shape);
+    at->enter += input->disparities;
 }
 
-/* Bytes before and behind the last column's first vector are not touched by its last. */
-INLINE void repeat_column(const struct row_input *input, struct shape shape, vec8 *column)
+/* The last column, which enters again. Its first vector is whole: only columns before it could overwrite that. */
+INLINE void repeat_column(const struct row_input *input, struct shape shape, const struct cursor *at, vec8 *column)
 {
-    const uint8_t *at = input->columns + (size_t)(input->width - 1u) * input->disparities;
     for (unsigned i = 0; i < shape.vectors; i++) {
-        column[i] = load8(at + i * VECTOR_LEN);
+        column[i] = load8(at->enter - input->disparities + i * VECTOR_LEN);
     }
 }
 
@@ -100,9 +108,9 @@ INLINE vec16 mask_excess(vec16 keys, struct shape shape, unsigned vector, unsign
     return and16(keys, load16(keep + 32u + first - disparities));
 }
 
-/* Keys of a pixel from those of the pixel before. */
-INLINE void slide_window(const struct row_input *input, struct shape shape, const vec8 *column, const uint8_t *leave,
-                         struct held_keys *held, const int16_t *before, int16_t *keys, vec16 *least)
+/* Keys of a pixel from those of the pixel before. Returns the least of VECTOR_LEN / 2 groups of lanes. */
+INLINE vec16 slide_window(const struct row_input *input, struct shape shape, const vec8 *column, const uint8_t *leave,
+                          struct held_keys *held, const int16_t *before, int16_t *keys)
 {
     vec16 least_first = splat16(INT16_MAX);
     vec16 least_second = splat16(INT16_MAX);
@@ -122,7 +130,7 @@ INLINE void slide_window(const struct row_input *input, struct shape shape, cons
         least_first = min16(least_first, first);
         least_second = min16(least_second, second);
     }
-    *least = min16(least_first, least_second);
+    return min16(least_first, least_second);
 }
 
 /* Lane d becomes a candidate, or ceases to be one. Returns the keys of the pixel before, so changed. */
@@ -173,10 +181,12 @@ INLINE void find_bounds(struct winners *winners, unsigned from, unsigned percent
 {
     uint32_t scale = ((uint32_t)percent << 18) / 100u + 1u;
     for (unsigned x = from; x < from + BLOCK; x += LANES16) {
-        vec16 found = load16(winners->sum + x);
-        vec16 group = SHIFT_LEFT16(and16(found, splat16(15)), 3);
-        store16(winners->d + x, or16(group, load16(winners->d + x)));
-        vec16 sum = SHIFT_RIGHT_UNSIGNED16(found, 4);
+        vec16 key;
+        vec16 lane;
+        split_found(winners->found + x, &key, &lane);
+        store16(winners->sum + x, key);
+        store16(winners->d + x, or16(SHIFT_LEFT16(and16(key, splat16(15)), 3), lane));
+        vec16 sum = SHIFT_RIGHT_UNSIGNED16(key, 4);
         vec16 more = add16(multiply_high16(sum, splat16((int16_t)(uint16_t)scale)),
                            multiply16(sum, splat16((int16_t)(scale >> 16))));
         vec16 limit = add16(sum, SHIFT_RIGHT_UNSIGNED16(more, 2));
@@ -187,20 +197,51 @@ INLINE void find_bounds(struct winners *winners, unsigned from, unsigned percent
 
 INLINE void count_within(struct shape shape, int16_t *block, unsigned from, unsigned count, struct winners *winners)
 {
-    for (unsigned i = 0; i < count; i++) {
-        const int16_t *keys = keys_at(block, shape, i);
-        unsigned x = from + i;
+    const int16_t *keys = keys_at(block, shape, 0);
+    for (size_t x = from; x < from + count; x++, keys += shape.vectors * VECTOR_LEN + KEY_PAD) {
         vec16 bound = splat16(winners->bound[x]);
-        vec8 within = splat8(0);
+        vec8 within[VECTORS_MAX];
         for (unsigned j = 0; j < shape.vectors; j++) {
             vec16 first = above16(bound, load16(keys + j * VECTOR_LEN));
             vec16 second = above16(bound, load16(keys + j * VECTOR_LEN + LANES16));
-            within = subtract8(within, join8(first, second));
+            within[j] = join8(first, second);
         }
         const int16_t *own = keys + winners->d[x];
-        winners->count[x] = (int16_t)total8(within);
+        winners->count[x] = (int16_t)count_lanes(within, shape.vectors);
         winners->below[x] = own[-1];
         winners->above[x] = own[1];
+    }
+}
+
+/* The keys and the least of them of up to BLOCK pixels. lane: which one the first pixel toggles. */
+INLINE void slide_block(const struct row_input *input, struct shape shape, struct cursor *at, struct held_keys *held,
+                        unsigned from, unsigned count, int16_t *block, struct winners *winners)
+{
+    _Alignas(32) int16_t changed[TSR_DISPARITY_COUNT_MAX];
+    const int16_t *before = keys_at(block, shape, BLOCK - 1u);
+    int16_t *keys = keys_at(block, shape, 0);
+    int width = (int)input->width;
+    int lane = (int)from - input->start;
+    lane -= lane >= width ? width : 0;
+    unsigned last_entering = input->width - input->radius;
+    for (size_t i = 0; i < count; i++, lane++) {
+        vec8 column[VECTORS_MAX];
+        if (from + i < last_entering) {
+            move_column(input, shape, at, column);
+        } else {
+            repeat_column(input, shape, at, column);
+        }
+        if (lane == width) {
+            lane = 0;
+        }
+        if ((unsigned)lane < input->disparities) {
+            before = toggle_lane(shape, (unsigned)lane, held, before, changed);
+        }
+        vec16 least = slide_window(input, shape, column, at->leave, held, before, keys);
+        find_least16(least, winners->found + from + i);
+        at->leave += from + i < input->radius + 1u ? 0u : input->disparities;
+        before = keys;
+        keys += shape.vectors * VECTOR_LEN + KEY_PAD;
     }
 }
 
@@ -208,40 +249,20 @@ INLINE void count_within(struct shape shape, int16_t *block, unsigned from, unsi
 INLINE void find_winners(const struct row_input *input, struct shape shape, unsigned percent, struct winners *winners)
 {
     _Alignas(32) int16_t block[KEYS_MAX];
-    struct held_keys held;
     for (unsigned i = 0; i <= BLOCK; i++) {
         memset(keys_at(block, shape, i) - KEY_PAD, 0, KEY_PAD * sizeof *block);
     }
-    vec8 column[VECTORS_MAX];
-    vec8 first = load8(input->columns);
+    struct cursor at = {input->left_new, input->left_old, input->right_new,     input->right_old,
+                        input->columns,  input->columns,  load8(input->columns)};
     for (unsigned x = 0; x < input->radius; x++) {
-        move_column(input, shape, x, &first, column);
+        vec8 column[VECTORS_MAX];
+        move_column(input, shape, &at, column);
     }
+    struct held_keys held;
     begin_keys(input, shape, &held, keys_at(block, shape, BLOCK - 1u));
     for (unsigned from = 0; from < input->width; from += BLOCK) {
         unsigned count = input->width - from < BLOCK ? input->width - from : BLOCK;
-        const int16_t *before = keys_at(block, shape, BLOCK - 1u);
-        for (unsigned i = 0; i < count; i++) {
-            unsigned x = from + i;
-            _Alignas(32) int16_t changed[TSR_DISPARITY_COUNT_MAX];
-            if (x + input->radius < input->width) {
-                move_column(input, shape, x + input->radius, &first, column);
-            } else {
-                repeat_column(input, shape, column);
-            }
-            unsigned lane = x - (unsigned)input->start;
-            lane = lane < input->width ? lane : lane - input->width;
-            if (lane < input->disparities) {
-                before = toggle_lane(shape, lane, &held, before, changed);
-            }
-            unsigned left = x > input->radius ? x - input->radius - 1u : 0u;
-            int16_t *keys = keys_at(block, shape, i);
-            vec16 least;
-            slide_window(input, shape, column, input->columns + (size_t)left * input->disparities, &held, before, keys,
-                         &least);
-            find_least16(least, winners->sum + x, winners->d + x);
-            before = keys;
-        }
+        slide_block(input, shape, &at, &held, from, count, block, winners);
         find_bounds(winners, from, percent);
         count_within(shape, block, from, count, winners);
     }

@@ -93,11 +93,13 @@ INLINE vec8 above8(vec8 a, vec8 b)
     return _mm256_cmpgt_epi8(a, b);
 }
 
-INLINE unsigned total8(vec8 a)
+INLINE unsigned count_lanes(const vec8 *masks, unsigned count)
 {
-    __m256i quarters = _mm256_sad_epu8(a, _mm256_setzero_si256());
-    __m128i halves = _mm_add_epi32(_mm256_castsi256_si128(quarters), _mm256_extracti128_si256(quarters, 1));
-    return (unsigned)(_mm_cvtsi128_si32(halves) + _mm_extract_epi16(halves, 4));
+    unsigned lanes = 0;
+    for (unsigned i = 0; i < count; i++) {
+        lanes += (unsigned)__builtin_popcount((unsigned)_mm256_movemask_epi8(masks[i]));
+    }
+    return lanes;
 }
 
 /* A nibble's differences to all nibbles, so that a shuffle looks them up. */
@@ -206,17 +208,21 @@ INLINE vec16 xor16(vec16 a, vec16 b)
 #define SHIFT_RIGHT_UNSIGNED16(a, n) _mm256_srli_epi16(a, n)
 
 /* The instruction finds the least unsigned number, and the first lane that has it. */
-INLINE __m128i least_of_half(vec16 a)
+INLINE void find_least16(vec16 a, uint32_t *found)
 {
     __m128i half = _mm_min_epi16(_mm256_castsi256_si128(a), _mm256_extracti128_si256(a, 1));
-    return _mm_minpos_epu16(_mm_xor_si128(half, _mm_set1_epi16(INT16_MIN)));
+    *found = (uint32_t)_mm_cvtsi128_si32(_mm_minpos_epu16(_mm_xor_si128(half, _mm_set1_epi16(INT16_MIN))));
 }
 
-INLINE void find_least16(vec16 a, int16_t *least_flipped, int16_t *lane)
+INLINE void split_found(const uint32_t *found, vec16 *least, vec16 *lane)
 {
-    __m128i found = least_of_half(a);
-    *least_flipped = (int16_t)_mm_extract_epi16(found, 0);
-    *lane = (int16_t)_mm_extract_epi16(found, 1);
+    __m256i low = _mm256_loadu_si256((const __m256i *)(const void *)found);
+    __m256i high = _mm256_loadu_si256((const __m256i *)(const void *)(found + 8));
+    __m256i leasts = _mm256_packs_epi32(_mm256_srai_epi32(_mm256_slli_epi32(low, 16), 16),
+                                        _mm256_srai_epi32(_mm256_slli_epi32(high, 16), 16));
+    __m256i lanes = _mm256_packs_epi32(_mm256_srli_epi32(low, 16), _mm256_srli_epi32(high, 16));
+    *least = _mm256_permute4x64_epi64(leasts, _MM_SHUFFLE(3, 1, 2, 0));
+    *lane = _mm256_permute4x64_epi64(lanes, _MM_SHUFFLE(3, 1, 2, 0));
 }
 
 #endif

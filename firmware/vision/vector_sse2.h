@@ -14,13 +14,14 @@
  *   difference8(a, b)            |a - b|, unsigned
  *   above8 above16(a, b)         lanes of ones where a > b, signed; equal16
  *   join8(low, high)             16-bit lanes of ones or zeros as bytes, in any order
- *   total8(a)                    the sum of all bytes, modulo 2^16 at least
+ *   count_lanes(masks, count)    how many bytes of these vectors are ones, others are 0
  *   probe4(n), probe_difference4(p, a)   |n - a| of nibbles in bytes
  *   pair_lanes(a)                lanes in order to the order of LANE_PAIR
  *   first_times16, second_times16(a)     16 times the bytes with a sign
  *   zip_low8, zip_high8(a, b)    b << 8 | a; which lanes, only the two together say
- *   find_least16(a, &least, &lane)       the least lane, plus 2^15, and the first
+ *   find_least16(a, &found)      the least lane plus 2^15, and 2^16 times the first
  *                                lane modulo 8 that has it
+ *   split_found(found, &least, &lane)    VECTOR_LEN / 2 of these apart
  *
  * Where lanes are widened a vector of bytes becomes two: lanes first to
  * first + VECTOR_LEN / 2 - 1 and the others. With LANE_PAIR = 1 they are lanes in
@@ -117,10 +118,14 @@ INLINE vec8 above8(vec8 a, vec8 b)
     return _mm_cmpgt_epi8(a, b);
 }
 
-INLINE unsigned total8(vec8 a)
+INLINE unsigned count_lanes(const vec8 *masks, unsigned count)
 {
-    __m128i halves = _mm_sad_epu8(a, _mm_setzero_si128());
-    return (unsigned)(_mm_cvtsi128_si32(halves) + _mm_extract_epi16(halves, 4));
+    __m128i lanes = _mm_setzero_si128();
+    for (unsigned i = 0; i < count; i++) {
+        lanes = _mm_sub_epi8(lanes, masks[i]);
+    }
+    lanes = _mm_sad_epu8(lanes, _mm_setzero_si128());
+    return (unsigned)(_mm_cvtsi128_si32(lanes) + _mm_extract_epi16(lanes, 4));
 }
 
 INLINE vec8 probe4(uint8_t nibble)
@@ -229,15 +234,23 @@ INLINE vec16 xor16(vec16 a, vec16 b)
 #define SHIFT_RIGHT_UNSIGNED16(a, n) _mm_srli_epi16(a, n)
 
 /* The least in every lane, by rotations; its first lane from a mask of two bits per lane. */
-INLINE void find_least16(vec16 a, int16_t *least_flipped, int16_t *lane)
+INLINE void find_least16(vec16 a, uint32_t *found)
 {
     __m128i least = _mm_min_epi16(a, _mm_shuffle_epi32(a, _MM_SHUFFLE(1, 0, 3, 2)));
     least = _mm_min_epi16(least, _mm_shuffle_epi32(least, _MM_SHUFFLE(2, 3, 0, 1)));
     least = _mm_min_epi16(
         least, _mm_shufflehi_epi16(_mm_shufflelo_epi16(least, _MM_SHUFFLE(2, 3, 0, 1)), _MM_SHUFFLE(2, 3, 0, 1)));
     unsigned where = (unsigned)_mm_movemask_epi8(_mm_cmpeq_epi16(a, least));
-    *least_flipped = (int16_t)(_mm_cvtsi128_si32(least) ^ INT16_MIN);
-    *lane = (int16_t)(__builtin_ctz(where) / 2);
+    unsigned flipped = ((unsigned)_mm_cvtsi128_si32(least) & 0xffffu) ^ 0x8000u;
+    *found = (unsigned)__builtin_ctz(where) << 15 | flipped;
+}
+
+INLINE void split_found(const uint32_t *found, vec16 *least, vec16 *lane)
+{
+    __m128i low = _mm_loadu_si128((const __m128i *)(const void *)found);
+    __m128i high = _mm_loadu_si128((const __m128i *)(const void *)(found + 4));
+    *least = _mm_packs_epi32(_mm_srai_epi32(_mm_slli_epi32(low, 16), 16), _mm_srai_epi32(_mm_slli_epi32(high, 16), 16));
+    *lane = _mm_packs_epi32(_mm_srli_epi32(low, 16), _mm_srli_epi32(high, 16));
 }
 
 #endif
