@@ -32,17 +32,20 @@
 #define PIXELS_MAX (TSR_IMAGE_WIDTH_MAX + 2u * VECTOR_LEN)
 #define LANES_MAX (TSR_IMAGE_WIDTH_MAX + TSR_DISPARITY_COUNT_MAX + VECTOR_LEN)
 
-/* The right pixels that lanes meet, ascending with d, descending with x. */
-struct right_lanes {
-    _Alignas(32) uint8_t bytes[2u * LANES_MAX];
+/* The frame rows that enter and leave, as columns are moved by them. One after the other, so that one pointer finds
+ * both. */
+enum {
+    ENTERS,
+    LEAVES
+};
+struct frame_rows {
+    _Alignas(32) uint8_t left[2][PIXELS_MAX];      /* probes, probe_index8() */
+    _Alignas(32) uint8_t right[2][2u * LANES_MAX]; /* what lanes meet: ascending with d, descending with x */
 };
 
 /* What a row of sums is made from. */
 struct row_input {
-    const uint8_t *left_new;
-    const uint8_t *left_old;
-    const uint8_t *right_new; /* lane 0 of pixel 0 */
-    const uint8_t *right_old;
+    const struct frame_rows *rows;
     uint8_t *columns;
     unsigned width;
     unsigned disparities;
@@ -86,40 +89,46 @@ static void clip_row(const uint8_t *row, unsigned width, int start, uint8_t *cli
     memset(clipped + before + inside, row[width - 1u], count - before - inside);
 }
 
-/* Returns lane 0 of pixel 0; pixels step by 2 bytes where lanes are paired. */
-static const uint8_t *lay_out_right(const struct tsr_match *match, unsigned y, bool paired, struct right_lanes *lanes)
+/* One of the frame rows. */
+static void lay_out_row(const struct tsr_match *match, unsigned y, struct frame_rows *rows, unsigned which)
 {
     const struct tsr_match_config *config = &match->config;
-    const uint8_t *row = match->right.pixels + (size_t)y * match->right.stride;
+    const uint8_t *right_row = match->right.pixels + (size_t)y * match->right.stride;
+    uint8_t *left = rows->left[which];
+    uint8_t *right = rows->right[which];
+    memcpy(left, match->left.pixels + (size_t)y * match->left.stride, config->width);
+    for (unsigned x = 0; x < config->width; x += VECTOR_LEN) {
+        store8(left + x, probe_index8(load8(left + x)));
+    }
     size_t count = config->width + config->disparities + VECTOR_LEN;
-    if (!paired) {
-        clip_row(row, config->width, config->search_start_px, lanes->bytes, count);
-        return lanes->bytes + (config->width - 1u);
+    if (!has_pairs(config)) {
+        clip_row(right_row, config->width, config->search_start_px, right, count);
+        return;
     }
     uint8_t clipped[LANES_MAX + LANE_PAIR];
-    clip_row(row, config->width, config->search_start_px, clipped, count + LANE_PAIR);
+    clip_row(right_row, config->width, config->search_start_px, clipped, count + LANE_PAIR);
     for (size_t i = 0; i < count; i++) {
-        lanes->bytes[2u * i] = clipped[i];
-        lanes->bytes[2u * i + 1u] = clipped[i + LANE_PAIR];
+        right[2u * i] = clipped[i];
+        right[2u * i + 1u] = clipped[i + LANE_PAIR];
     }
-    return lanes->bytes + 2u * (config->width - 1u);
 }
 
 /* Column sums times + one more row. */
-static void add_row(const struct tsr_match *match, unsigned y, unsigned times, bool paired)
+static void add_row(const struct tsr_match *match, unsigned y, unsigned times)
 {
     const struct tsr_match_config *config = &match->config;
-    const uint8_t *left = match->left.pixels + (size_t)y * match->left.stride;
-    struct right_lanes lanes;
-    const uint8_t *right = lay_out_right(match, y, paired, &lanes);
+    struct frame_rows rows;
+    lay_out_row(match, y, &rows, ENTERS);
+    unsigned step = has_pairs(config) ? 2u : 1u;
     uint8_t *column = columns_of(match);
     vec8 first = load8(column);
     for (unsigned x = 0; x < config->width; x++) {
-        vec8 probe = probe4(left[x]);
+        const uint8_t *right = rows.right[ENTERS] + (config->width - 1u - x) * step;
+        vec8 probe = probe4(rows.left[ENTERS][x]);
         vec8 next = load8(column + config->disparities);
         for (unsigned d = 0; d < config->disparities; d += VECTOR_LEN) {
             vec8 sums = d == 0 ? first : load8(column + d);
-            vec8 added = probe_difference4(probe, load8(right + (paired ? 2u : 1u) * d));
+            vec8 added = probe_difference4(probe, load8(right + d * step));
             for (unsigned i = 0; i < times; i++) {
                 sums = add8(sums, added);
             }
@@ -127,7 +136,6 @@ static void add_row(const struct tsr_match *match, unsigned y, unsigned times, b
         }
         first = next;
         column += config->disparities;
-        right -= paired ? 2 : 1;
     }
 }
 

@@ -42,18 +42,11 @@ static void find_winners_for(const struct row_input *input, unsigned percent, st
 static void match_row(const struct tsr_match *match, unsigned y, unsigned y_new, unsigned y_old)
 {
     const struct tsr_match_config *config = &match->config;
-    struct right_lanes lanes_new;
-    struct right_lanes lanes_old;
-    bool paired = has_pairs(config);
-    struct row_input input = {match->left.pixels + (size_t)y_new * match->left.stride,
-                              match->left.pixels + (size_t)y_old * match->left.stride,
-                              lay_out_right(match, y_new, paired, &lanes_new),
-                              lay_out_right(match, y_old, paired, &lanes_old),
-                              columns_of(match),
-                              config->width,
-                              config->disparities,
-                              config->window / 2u,
-                              config->search_start_px};
+    struct frame_rows rows;
+    lay_out_row(match, y_new, &rows, ENTERS);
+    lay_out_row(match, y_old, &rows, LEAVES);
+    struct row_input input = {
+        &rows, columns_of(match), config->width, config->disparities, config->window / 2u, config->search_start_px};
     struct winners winners;
     find_winners_for(&input, config->uniqueness_percent, &winners);
     struct verdicts verdicts;
@@ -66,7 +59,7 @@ static void match_row(const struct tsr_match *match, unsigned y, unsigned y_new,
 /* As the portable one, for texture as well. */
 static void warm_up_row(const struct tsr_match *match, unsigned y, unsigned times)
 {
-    add_row(match, y, times, has_pairs(&match->config));
+    add_row(match, y, times);
     const uint8_t *left = match->left.pixels + (size_t)y * match->left.stride;
     uint8_t *texture = tsr_match_share_scratch(match).texture;
     uint8_t cap = match->config.prefilter_cap;

@@ -41,7 +41,7 @@ INLINE vec16 clip_derivatives(const int16_t *sums, vec16 cap)
 
 static void filter_row(const struct tsr_gray *frame, unsigned y, uint8_t *row_above, int cap, bool mirrored)
 {
-    int16_t sums[PIXELS_MAX + 2u] = {0};
+    int16_t sums[PIXELS_MAX + 2u];
     uint8_t filtered[PIXELS_MAX];
     add_vertically(frame, y, row_above, sums);
     vec16 caps = splat16((int16_t)cap);

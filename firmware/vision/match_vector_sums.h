@@ -43,10 +43,8 @@ INLINE int16_t *keys_at(int16_t *block, struct shape shape, unsigned pixel)
 
 /* Where the columns are that enter and leave. */
 struct cursor {
-    const uint8_t *left_new;
-    const uint8_t *left_old;
-    const uint8_t *right_new;
-    const uint8_t *right_old;
+    const uint8_t *left;
+    const uint8_t *right; /* lane 0 */
     uint8_t *enter;
     const uint8_t *leave;
     vec8 first; /* of the column that enters, where shape.excess */
@@ -66,22 +64,21 @@ INLINE vec8 paired(vec8 column, struct shape shape)
 /* The column that enters, moved down. */
 INLINE void move_column(const struct row_input *input, struct shape shape, struct cursor *at, vec8 *column)
 {
-    vec8 probe_new = probe4(*at->left_new);
-    vec8 probe_old = probe4(*at->left_old);
+    vec8 probe_new = probe4(at->left[0]);
+    vec8 probe_old = probe4(at->left[sizeof input->rows->left[ENTERS]]);
     vec8 next = shape.excess ? load8(at->enter + input->disparities) : at->first;
     for (unsigned i = 0; i < shape.vectors; i++) {
         unsigned d = i * VECTOR_LEN;
-        vec8 added = probe_difference4(probe_new, load8(at->right_new + d * lane_step(shape)));
-        vec8 taken = probe_difference4(probe_old, load8(at->right_old + d * lane_step(shape)));
+        const uint8_t *right = at->right + d * lane_step(shape);
+        vec8 added = probe_difference4(probe_new, load8(right));
+        vec8 taken = probe_difference4(probe_old, load8(right + sizeof input->rows->right[ENTERS]));
         vec8 sums = shape.excess && i == 0 ? at->first : load8(at->enter + d);
         column[i] = add8(sums, subtract8(added, taken));
         store8(at->enter + d, column[i]);
     }
     at->first = next;
-    at->left_new++;
-    at->left_old++;
-    at->right_new -= lane_step(shape);
-    at->right_old -= lane_step(shape);
+    at->left++;
+    at->right -= lane_step(shape);
     at->enter += input->disparities;
 }
 
@@ -213,33 +210,41 @@ INLINE void count_within(struct shape shape, int16_t *block, unsigned from, unsi
     }
 }
 
-/* The keys and the least of them of up to BLOCK pixels. lane: which one the first pixel toggles. */
-INLINE void slide_block(const struct row_input *input, struct shape shape, struct cursor *at, struct held_keys *held,
-                        unsigned from, unsigned count, int16_t *block, struct winners *winners)
+/* Whether no pixel of the block toggles a lane, has no column to enter or keeps one that is to leave. */
+INLINE bool is_plain(const struct row_input *input, unsigned from)
+{
+    int lane = (int)from - input->start;
+    int width = (int)input->width;
+    bool toggles = lane + (int)BLOCK > 0 && lane < (int)input->disparities;
+    return !toggles && lane + (int)BLOCK <= width && from > input->radius &&
+           from + BLOCK + input->radius <= input->width;
+}
+
+/* The keys and the least of them of up to BLOCK pixels. */
+INLINE void slide_block(const struct row_input *input, struct shape shape, bool plain, struct cursor *at,
+                        struct held_keys *held, unsigned from, unsigned count, const int16_t *before, int16_t *keys,
+                        struct winners *winners)
 {
     _Alignas(32) int16_t changed[TSR_DISPARITY_COUNT_MAX];
-    const int16_t *before = keys_at(block, shape, BLOCK - 1u);
-    int16_t *keys = keys_at(block, shape, 0);
-    int width = (int)input->width;
-    int lane = (int)from - input->start;
-    lane -= lane >= width ? width : 0;
-    unsigned last_entering = input->width - input->radius;
-    for (size_t i = 0; i < count; i++, lane++) {
+    unsigned entering = input->width - input->radius;
+    for (size_t i = 0; i < count; i++) {
+        unsigned x = from + (unsigned)i;
         vec8 column[VECTORS_MAX];
-        if (from + i < last_entering) {
+        if (plain || x < entering) {
             move_column(input, shape, at, column);
         } else {
             repeat_column(input, shape, at, column);
         }
-        if (lane == width) {
-            lane = 0;
-        }
-        if ((unsigned)lane < input->disparities) {
-            before = toggle_lane(shape, (unsigned)lane, held, before, changed);
+        if (!plain) {
+            int lane = (int)x - input->start;
+            lane -= lane >= (int)input->width ? (int)input->width : 0;
+            if (lane >= 0 && lane < (int)input->disparities) {
+                before = toggle_lane(shape, (unsigned)lane, held, before, changed);
+            }
         }
         vec16 least = slide_window(input, shape, column, at->leave, held, before, keys);
         find_least16(least, winners->found + from + i);
-        at->leave += from + i < input->radius + 1u ? 0u : input->disparities;
+        at->leave += plain || x > input->radius ? input->disparities : 0u;
         before = keys;
         keys += shape.vectors * VECTOR_LEN + KEY_PAD;
     }
@@ -248,23 +253,39 @@ INLINE void slide_block(const struct row_input *input, struct shape shape, struc
 /* The columns moved, and what is known of every pixel then. */
 INLINE void find_winners(const struct row_input *input, struct shape shape, unsigned percent, struct winners *winners)
 {
-    _Alignas(32) int16_t block[KEYS_MAX];
-    for (unsigned i = 0; i <= BLOCK; i++) {
-        memset(keys_at(block, shape, i) - KEY_PAD, 0, KEY_PAD * sizeof *block);
+    _Alignas(32) int16_t keys[2u * KEYS_MAX];
+    for (unsigned i = 0; i <= 2u * BLOCK; i++) {
+        memset(keys_at(keys, shape, i) - KEY_PAD, 0, KEY_PAD * sizeof *keys);
     }
-    struct cursor at = {input->left_new, input->left_old, input->right_new,     input->right_old,
-                        input->columns,  input->columns,  load8(input->columns)};
+    struct cursor at = {input->rows->left[ENTERS], input->rows->right[ENTERS] + (input->width - 1u) * lane_step(shape),
+                        input->columns, input->columns, load8(input->columns)};
     for (unsigned x = 0; x < input->radius; x++) {
         vec8 column[VECTORS_MAX];
         move_column(input, shape, &at, column);
     }
     struct held_keys held;
-    begin_keys(input, shape, &held, keys_at(block, shape, BLOCK - 1u));
-    for (unsigned from = 0; from < input->width; from += BLOCK) {
-        unsigned count = input->width - from < BLOCK ? input->width - from : BLOCK;
-        slide_block(input, shape, &at, &held, from, count, block, winners);
-        find_bounds(winners, from, percent);
-        count_within(shape, block, from, count, winners);
+    int16_t *block = keys;
+    int16_t *other = keys_at(keys, shape, BLOCK) - KEY_PAD;
+    begin_keys(input, shape, &held, keys_at(other, shape, BLOCK - 1u));
+    for (unsigned from = 0; from < input->width + BLOCK; from += BLOCK) {
+        if (from < input->width) {
+            unsigned left = input->width - from;
+            const int16_t *before = keys_at(other, shape, BLOCK - 1u);
+            int16_t *first = keys_at(block, shape, 0);
+            if (is_plain(input, from)) {
+                slide_block(input, shape, true, &at, &held, from, BLOCK, before, first, winners);
+            } else {
+                slide_block(input, shape, false, &at, &held, from, left < BLOCK ? left : BLOCK, before, first, winners);
+            }
+        }
+        if (from > 0) { /* the block before: what it stored in pieces can be loaded in vectors by now */
+            unsigned left = input->width - (from - BLOCK);
+            find_bounds(winners, from - BLOCK, percent);
+            count_within(shape, other, from - BLOCK, left < BLOCK ? left : BLOCK, winners);
+        }
+        int16_t *swap = block;
+        block = other;
+        other = swap;
     }
 }
 

@@ -102,12 +102,17 @@ INLINE unsigned count_lanes(const vec8 *masks, unsigned count)
     return lanes;
 }
 
+INLINE vec8 probe_index8(vec8 nibbles)
+{
+    return _mm256_sub_epi8(_mm256_set1_epi8(16), nibbles);
+}
+
 /* A nibble's differences to all nibbles, so that a shuffle looks them up. */
-INLINE vec8 probe4(uint8_t nibble)
+INLINE vec8 probe4(uint8_t index)
 {
     static const _Alignas(16) int8_t counting[32] = {16, 15, 14, 13, 12, 11, 10, 9, 8, 7, 6,  5,  4,  3,  2,  1,
                                                      0,  1,  2,  3,  4,  5,  6,  7, 8, 9, 10, 11, 12, 13, 14, 15};
-    return _mm256_broadcastsi128_si256(_mm_loadu_si128((const __m128i *)(const void *)(counting + 16 - nibble)));
+    return _mm256_broadcastsi128_si256(_mm_loadu_si128((const __m128i *)(const void *)(counting + index)));
 }
 
 INLINE vec8 probe_difference4(vec8 probe, vec8 nibbles)

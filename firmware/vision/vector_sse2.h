@@ -15,7 +15,8 @@
  *   above8 above16(a, b)         lanes of ones where a > b, signed; equal16
  *   join8(low, high)             16-bit lanes of ones or zeros as bytes, in any order
  *   count_lanes(masks, count)    how many bytes of these vectors are ones, others are 0
- *   probe4(n), probe_difference4(p, a)   |n - a| of nibbles in bytes
+ *   probe_index8(a)              of nibbles in bytes, what probe4() takes
+ *   probe_difference4(probe4(i), a)      |n - a|, where i is the index of n
  *   pair_lanes(a)                lanes in order to the order of LANE_PAIR
  *   first_times16, second_times16(a)     16 times the bytes with a sign
  *   zip_low8, zip_high8(a, b)    b << 8 | a; which lanes, only the two together say
@@ -128,7 +129,12 @@ INLINE unsigned count_lanes(const vec8 *masks, unsigned count)
     return (unsigned)(_mm_cvtsi128_si32(lanes) + _mm_extract_epi16(lanes, 4));
 }
 
-INLINE vec8 probe4(uint8_t nibble)
+INLINE vec8 probe_index8(vec8 nibbles)
+{
+    return _mm_slli_epi16(nibbles, 4);
+}
+
+INLINE vec8 probe4(uint8_t index)
 {
     static const _Alignas(16) uint64_t splats[16][2] = {
 #define SPLAT(n) {n * UINT64_C(0x0101010101010101), n * UINT64_C(0x0101010101010101)}
@@ -136,7 +142,7 @@ INLINE vec8 probe4(uint8_t nibble)
         SPLAT(8), SPLAT(9), SPLAT(10), SPLAT(11), SPLAT(12), SPLAT(13), SPLAT(14), SPLAT(15),
 #undef SPLAT
     };
-    return _mm_load_si128((const __m128i *)(const void *)splats[nibble]);
+    return _mm_load_si128((const __m128i *)(const void *)((const uint8_t *)splats + index));
 }
 
 INLINE vec8 probe_difference4(vec8 probe, vec8 nibbles)
