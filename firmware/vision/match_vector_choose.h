@@ -9,6 +9,8 @@
 
 #include "match_vector.h"
 
+#define UNROLLED 4u /* loops of so few instructions per pixel that counting would be half of them */
+
 /* Lanes of ones where a test is passed. */
 struct verdicts {
     _Alignas(32) int16_t textured[PIXELS_MAX];
@@ -122,20 +124,34 @@ static struct searching find_searching(const struct tsr_match_config *config)
     return searching;
 }
 
+INLINE void claim_right(uint16_t *held, uint16_t claim)
+{
+    *held = claim < *held ? claim : *held;
+}
+
 /* Of every pixel the claim that holds of the right pixel it claims: eq. (17). */
-static void find_claims(const struct tsr_match_config *config, const uint16_t *rights, const int16_t *claims,
-                        int16_t *holding)
+static void find_claims(const struct tsr_match_config *config, const uint16_t *rights, const uint16_t *claims,
+                        uint16_t *holding)
 {
     uint16_t held[TSR_IMAGE_WIDTH_MAX];
     memset(held, 0xff, config->width * sizeof *held);
     struct searching searching = find_searching(config);
-    for (size_t x = searching.first; x < searching.end; x++) {
-        uint16_t *at = held + rights[x];
-        uint16_t claim = (uint16_t)claims[x];
-        *at = claim < *at ? claim : *at;
+    size_t x = searching.first;
+    for (; x + UNROLLED <= searching.end; x += UNROLLED) {
+        for (unsigned i = 0; i < UNROLLED; i++) {
+            claim_right(held + rights[x + i], claims[x + i]);
+        }
     }
-    for (size_t x = searching.first; x < searching.end; x++) {
-        holding[x] = (int16_t)held[rights[x]];
+    for (; x < searching.end; x++) {
+        claim_right(held + rights[x], claims[x]);
+    }
+    for (x = searching.first; x + UNROLLED <= searching.end; x += UNROLLED) {
+        for (unsigned i = 0; i < UNROLLED; i++) {
+            holding[x + i] = held[rights[x + i]];
+        }
+    }
+    for (; x < searching.end; x++) {
+        holding[x] = held[rights[x]];
     }
 }
 
@@ -144,7 +160,7 @@ static void write_row(const struct tsr_match *match, unsigned y, const struct wi
     const struct tsr_match_config *config = &match->config;
     if (config->lr_tolerance_px != TSR_MATCH_TEST_OFF) {
         _Alignas(32) int16_t holding[PIXELS_MAX];
-        find_claims(config, (const uint16_t *)choices->rights, choices->claims, holding);
+        find_claims(config, (const uint16_t *)choices->rights, (const uint16_t *)choices->claims, (uint16_t *)holding);
         vec16 tolerance = splat16(config->lr_tolerance_px);
         for (unsigned x = 0; x < config->width; x += LANES16) {
             vec16 apart = subtract16(and16(load16(holding + x), splat16(127)), load16(winners->d + x));
