@@ -55,8 +55,8 @@ struct row_input {
 
 /* What is found out about the pixels of a row, one number each. */
 struct winners {
-    _Alignas(32) uint32_t found[PIXELS_MAX]; /* as find_least16() gives it */
-    _Alignas(32) int16_t sum[PIXELS_MAX];    /* 16 S, or less than 0 where nothing may be chosen; low bits undefined */
+    _Alignas(32) int16_t kept[PIXELS_MAX * KEPT_LANES]; /* as keep_least16() gives it */
+    _Alignas(32) int16_t sum[PIXELS_MAX]; /* 16 S, or less than 0 where nothing may be chosen; low bits undefined */
     _Alignas(32) int16_t d[PIXELS_MAX];
     _Alignas(32) int16_t below[PIXELS_MAX]; /* 16 S - 2^15 of d - 1, of d + 1; not negative if not to be chosen */
     _Alignas(32) int16_t above[PIXELS_MAX];

@@ -25,7 +25,7 @@ static void add_vertically(const struct tsr_gray *frame, unsigned y, uint8_t *ro
     memcpy(row_above, row, width);
     for (unsigned x = 0; x < width; x += LANES16) {
         vec16 twice = SHIFT_LEFT16(load_wide(row + x), 1);
-        store16(sums + 1u + x, add16(twice, add16(load_wide(above + x), load_wide(below + x))));
+        store16_anywhere(sums + 1u + x, add16(twice, add16(load_wide(above + x), load_wide(below + x))));
     }
     sums[0] = sums[1];
     sums[width + 1u] = sums[width];
@@ -34,7 +34,7 @@ static void add_vertically(const struct tsr_gray *frame, unsigned y, uint8_t *ro
 /* Derivatives of LANES16 columns, rounded, clipped and made positive. */
 INLINE vec16 clip_derivatives(const int16_t *sums, vec16 cap)
 {
-    vec16 twice_apart = subtract16(load16(sums + 2), load16(sums));
+    vec16 twice_apart = subtract16(load16_anywhere(sums + 2), load16_anywhere(sums));
     vec16 quarter = SHIFT_RIGHT16(add16(twice_apart, splat16(2)), 2);
     return add16(min16(max16(quarter, subtract16(splat16(0), cap)), cap), cap);
 }

@@ -50,6 +50,12 @@ struct cursor {
     vec8 first; /* of the column that enters, where shape.excess */
 };
 
+/* Columns that fill their vectors are aligned. */
+INLINE vec8 load_column(const uint8_t *at, struct shape shape)
+{
+    return shape.excess ? load8(at) : load8_aligned(at);
+}
+
 INLINE unsigned lane_step(struct shape shape)
 {
     return LANE_PAIR > 1u && !shape.excess ? 2u : 1u;
@@ -72,7 +78,7 @@ INLINE void move_column(const struct row_input *input, struct shape shape, struc
         const uint8_t *right = at->right + d * lane_step(shape);
         vec8 added = probe_difference4(probe_new, load8(right));
         vec8 taken = probe_difference4(probe_old, load8(right + sizeof input->rows->right[ENTERS]));
-        vec8 sums = shape.excess && i == 0 ? at->first : load8(at->enter + d);
+        vec8 sums = shape.excess && i == 0 ? at->first : load_column(at->enter + d, shape);
         column[i] = add8(sums, subtract8(added, taken));
         store8(at->enter + d, column[i]);
     }
@@ -86,7 +92,7 @@ INLINE void move_column(const struct row_input *input, struct shape shape, struc
 INLINE void repeat_column(const struct row_input *input, struct shape shape, const struct cursor *at, vec8 *column)
 {
     for (unsigned i = 0; i < shape.vectors; i++) {
-        column[i] = load8(at->enter - input->disparities + i * VECTOR_LEN);
+        column[i] = load_column(at->enter - input->disparities + i * VECTOR_LEN, shape);
     }
 }
 
@@ -102,7 +108,7 @@ INLINE vec16 mask_excess(vec16 keys, struct shape shape, unsigned vector, unsign
     if (!shape.excess || vector + 2u < 2u * shape.vectors) {
         return keys;
     }
-    return and16(keys, load16(keep + 32u + first - disparities));
+    return and16(keys, load16_anywhere(keep + 32u + first - disparities));
 }
 
 /* Keys of a pixel from those of the pixel before. Returns the least of VECTOR_LEN / 2 groups of lanes. */
@@ -112,7 +118,7 @@ INLINE vec16 slide_window(const struct row_input *input, struct shape shape, con
     vec16 least_first = splat16(INT16_MAX);
     vec16 least_second = splat16(INT16_MAX);
     for (unsigned i = 0; i < shape.vectors; i++) {
-        vec8 change = paired(subtract8(column[i], load8(leave + i * VECTOR_LEN)), shape);
+        vec8 change = paired(subtract8(column[i], load_column(leave + i * VECTOR_LEN, shape)), shape);
         const int16_t *at = before + i * VECTOR_LEN;
         vec16 first = shape.held ? held->keys[2u * i] : load16(at);
         vec16 second = shape.held ? held->keys[2u * i + 1u] : load16(at + LANES16);
@@ -138,7 +144,7 @@ INLINE const int16_t *toggle_lane(struct shape shape, unsigned d, struct held_ke
     const int16_t *toggle = toggles + TSR_DISPARITY_COUNT_MAX - d;
     for (unsigned i = 0; i < 2u * shape.vectors; i++) {
         vec16 keys = shape.held ? held->keys[i] : load16(before + i * LANES16);
-        keys = xor16(keys, load16(toggle + i * LANES16));
+        keys = xor16(keys, load16_anywhere(toggle + i * LANES16));
         if (shape.held) {
             held->keys[i] = keys;
         } else {
@@ -180,7 +186,7 @@ INLINE void find_bounds(struct winners *winners, unsigned from, unsigned percent
     for (unsigned x = from; x < from + BLOCK; x += LANES16) {
         vec16 key;
         vec16 lane;
-        split_found(winners->found + x, &key, &lane);
+        find_least16(winners->kept + (size_t)x * KEPT_LANES, &key, &lane);
         store16(winners->sum + x, key);
         store16(winners->d + x, or16(SHIFT_LEFT16(and16(key, splat16(15)), 3), lane));
         vec16 sum = SHIFT_RIGHT_UNSIGNED16(key, 4);
@@ -243,7 +249,7 @@ INLINE void slide_block(const struct row_input *input, struct shape shape, bool 
             }
         }
         vec16 least = slide_window(input, shape, column, at->leave, held, before, keys);
-        find_least16(least, winners->found + from + i);
+        keep_least16(least, winners->kept + (from + i) * KEPT_LANES);
         at->leave += plain || x > input->radius ? input->disparities : 0u;
         before = keys;
         keys += shape.vectors * VECTOR_LEN + KEY_PAD;

@@ -13,12 +13,18 @@
 #define INLINE static inline __attribute__((always_inline))
 #define VECTOR_LEN 32u
 #define LANE_PAIR 16u
+#define KEPT_LANES 2u
 typedef __m256i vec8;
 typedef __m256i vec16;
 
 INLINE vec8 load8(const uint8_t *at)
 {
     return _mm256_loadu_si256((const __m256i *)(const void *)at);
+}
+
+INLINE vec8 load8_aligned(const uint8_t *at)
+{
+    return _mm256_load_si256((const __m256i *)(const void *)at);
 }
 
 INLINE void store8(uint8_t *at, vec8 a)
@@ -28,10 +34,20 @@ INLINE void store8(uint8_t *at, vec8 a)
 
 INLINE vec16 load16(const int16_t *at)
 {
+    return _mm256_load_si256((const __m256i *)(const void *)at);
+}
+
+INLINE vec16 load16_anywhere(const int16_t *at)
+{
     return _mm256_loadu_si256((const __m256i *)(const void *)at);
 }
 
 INLINE void store16(int16_t *at, vec16 a)
+{
+    _mm256_store_si256((__m256i *)(void *)at, a);
+}
+
+INLINE void store16_anywhere(int16_t *at, vec16 a)
 {
     _mm256_storeu_si256((__m256i *)(void *)at, a);
 }
@@ -213,16 +229,17 @@ INLINE vec16 xor16(vec16 a, vec16 b)
 #define SHIFT_RIGHT_UNSIGNED16(a, n) _mm256_srli_epi16(a, n)
 
 /* The instruction finds the least unsigned number, and the first lane that has it. */
-INLINE void find_least16(vec16 a, uint32_t *found)
+INLINE void keep_least16(vec16 a, int16_t *kept)
 {
     __m128i half = _mm_min_epi16(_mm256_castsi256_si128(a), _mm256_extracti128_si256(a, 1));
-    *found = (uint32_t)_mm_cvtsi128_si32(_mm_minpos_epu16(_mm_xor_si128(half, _mm_set1_epi16(INT16_MIN))));
+    __m128i found = _mm_minpos_epu16(_mm_xor_si128(half, _mm_set1_epi16(INT16_MIN)));
+    _mm_storeu_si32(kept, found);
 }
 
-INLINE void split_found(const uint32_t *found, vec16 *least, vec16 *lane)
+INLINE void find_least16(const int16_t *kept, vec16 *least, vec16 *lane)
 {
-    __m256i low = _mm256_loadu_si256((const __m256i *)(const void *)found);
-    __m256i high = _mm256_loadu_si256((const __m256i *)(const void *)(found + 8));
+    __m256i low = load16(kept);
+    __m256i high = load16(kept + 16);
     __m256i leasts = _mm256_packs_epi32(_mm256_srai_epi32(_mm256_slli_epi32(low, 16), 16),
                                         _mm256_srai_epi32(_mm256_slli_epi32(high, 16), 16));
     __m256i lanes = _mm256_packs_epi32(_mm256_srli_epi32(low, 16), _mm256_srli_epi32(high, 16));

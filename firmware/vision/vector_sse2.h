@@ -4,7 +4,8 @@
  * the same ones; a source file includes one of them.
  *
  *   VECTOR_LEN, vec8, vec16      bytes in a vector; of uint8_t, of int16_t
- *   load8 store8 load16 store16  no alignment is asked for
+ *   load8 store8 load16_anywhere store16_anywhere
+ *   load8_aligned load16 store16 at multiples of VECTOR_LEN
  *   load_wide(at)                VECTOR_LEN / 2 bytes, widened
  *   narrow(low, high)            bytes again, saturated at 0 and 255
  *   splat8 splat16 reverse8
@@ -20,9 +21,10 @@
  *   pair_lanes(a)                lanes in order to the order of LANE_PAIR
  *   first_times16, second_times16(a)     16 times the bytes with a sign
  *   zip_low8, zip_high8(a, b)    b << 8 | a; which lanes, only the two together say
- *   find_least16(a, &found)      the least lane plus 2^15, and 2^16 times the first
- *                                lane modulo 8 that has it
- *   split_found(found, &least, &lane)    VECTOR_LEN / 2 of these apart
+ *   keep_least16(a, kept)        into KEPT_LANES of 16 bits, aligned, what the next one needs
+ *   find_least16(kept, &least, &lane)    of VECTOR_LEN / 2 vectors so kept, in the order
+ *                                of lanes: the least number, plus 2^15, and the
+ *                                first lane modulo 8 that has it
  *
  * Where lanes are widened a vector of bytes becomes two: lanes first to
  * first + VECTOR_LEN / 2 - 1 and the others. With LANE_PAIR = 1 they are lanes in
@@ -39,12 +41,18 @@
 #define INLINE static inline __attribute__((always_inline))
 #define VECTOR_LEN 16u
 #define LANE_PAIR 1u
+#define KEPT_LANES 8u
 typedef __m128i vec8;
 typedef __m128i vec16;
 
 INLINE vec8 load8(const uint8_t *at)
 {
     return _mm_loadu_si128((const __m128i *)(const void *)at);
+}
+
+INLINE vec8 load8_aligned(const uint8_t *at)
+{
+    return _mm_load_si128((const __m128i *)(const void *)at);
 }
 
 INLINE void store8(uint8_t *at, vec8 a)
@@ -54,10 +62,20 @@ INLINE void store8(uint8_t *at, vec8 a)
 
 INLINE vec16 load16(const int16_t *at)
 {
+    return _mm_load_si128((const __m128i *)(const void *)at);
+}
+
+INLINE vec16 load16_anywhere(const int16_t *at)
+{
     return _mm_loadu_si128((const __m128i *)(const void *)at);
 }
 
 INLINE void store16(int16_t *at, vec16 a)
+{
+    _mm_store_si128((__m128i *)(void *)at, a);
+}
+
+INLINE void store16_anywhere(int16_t *at, vec16 a)
 {
     _mm_storeu_si128((__m128i *)(void *)at, a);
 }
@@ -239,24 +257,41 @@ INLINE vec16 xor16(vec16 a, vec16 b)
 #define SHIFT_RIGHT16(a, n) _mm_srai_epi16(a, n)
 #define SHIFT_RIGHT_UNSIGNED16(a, n) _mm_srli_epi16(a, n)
 
-/* The least in every lane, by rotations; its first lane from a mask of two bits per lane. */
-INLINE void find_least16(vec16 a, uint32_t *found)
+INLINE void keep_least16(vec16 a, int16_t *kept)
 {
-    __m128i least = _mm_min_epi16(a, _mm_shuffle_epi32(a, _MM_SHUFFLE(1, 0, 3, 2)));
-    least = _mm_min_epi16(least, _mm_shuffle_epi32(least, _MM_SHUFFLE(2, 3, 0, 1)));
-    least = _mm_min_epi16(
-        least, _mm_shufflehi_epi16(_mm_shufflelo_epi16(least, _MM_SHUFFLE(2, 3, 0, 1)), _MM_SHUFFLE(2, 3, 0, 1)));
-    unsigned where = (unsigned)_mm_movemask_epi8(_mm_cmpeq_epi16(a, least));
-    unsigned flipped = ((unsigned)_mm_cvtsi128_si32(least) & 0xffffu) ^ 0x8000u;
-    *found = (unsigned)__builtin_ctz(where) << 15 | flipped;
+    store16(kept, a);
 }
 
-INLINE void split_found(const uint32_t *found, vec16 *least, vec16 *lane)
+/* Rows a, b of lanes become rows of pairs, so three times of eight rows of lanes eight of columns. */
+INLINE void zip_rows(const vec16 *rows, vec16 *zipped)
 {
-    __m128i low = _mm_loadu_si128((const __m128i *)(const void *)found);
-    __m128i high = _mm_loadu_si128((const __m128i *)(const void *)(found + 4));
-    *least = _mm_packs_epi32(_mm_srai_epi32(_mm_slli_epi32(low, 16), 16), _mm_srai_epi32(_mm_slli_epi32(high, 16), 16));
-    *lane = _mm_packs_epi32(_mm_srli_epi32(low, 16), _mm_srli_epi32(high, 16));
+    for (unsigned i = 0; i < 4; i++) {
+        zipped[2u * i] = _mm_unpacklo_epi16(rows[i], rows[i + 4u]);
+        zipped[2u * i + 1u] = _mm_unpackhi_epi16(rows[i], rows[i + 4u]);
+    }
+}
+
+INLINE void find_least16(const int16_t *kept, vec16 *least, vec16 *lane)
+{
+    vec16 rows[8];
+    vec16 lanes[8];
+    for (unsigned i = 0; i < 8; i++) {
+        rows[i] = load16(kept + i * KEPT_LANES);
+    }
+    zip_rows(rows, lanes);
+    zip_rows(lanes, rows);
+    zip_rows(rows, lanes);
+    vec16 low = min16(min16(lanes[0], lanes[1]), min16(lanes[2], lanes[3]));
+    vec16 high = min16(min16(lanes[4], lanes[5]), min16(lanes[6], lanes[7]));
+    vec16 found = min16(low, high);
+    vec16 above = _mm_cmpgt_epi16(lanes[0], found); /* ones as long as no lane was the least */
+    vec16 passed = above;
+    for (unsigned i = 1; i < 7; i++) {
+        above = and16(above, _mm_cmpgt_epi16(lanes[i], found));
+        passed = add16(passed, above);
+    }
+    *least = xor16(found, splat16(INT16_MIN));
+    *lane = subtract16(_mm_setzero_si128(), passed);
 }
 
 #endif
