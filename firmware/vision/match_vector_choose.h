@@ -51,14 +51,18 @@ static void judge_texture(const struct tsr_match *match, unsigned y_new, unsigne
         memset(verdicts->textured, 0xff, sizeof verdicts->textured);
         return;
     }
-    uint8_t padded[PIXELS_MAX + 2u * TSR_MATCH_WINDOW_MAX];
+    uint8_t padded[PIXELS_MAX + VECTOR_LEN + 2u * TSR_MATCH_WINDOW_MAX];
     move_texture(match, y_new, y_old, padded);
     const uint8_t *first = padded + TSR_MATCH_WINDOW_MAX - config->window / 2u;
+    uint8_t pairs[PIXELS_MAX + VECTOR_LEN]; /* a column sum is at most 126 */
+    for (unsigned x = 0; x < config->width + (unsigned)TSR_MATCH_WINDOW_MAX; x += VECTOR_LEN) {
+        store8(pairs + x, add8(load8(first + x), load8(first + x + 1u)));
+    }
     vec16 least = splat16((int16_t)(config->texture_min * config->window - 1));
     for (unsigned x = 0; x < config->width; x += LANES16) {
-        vec16 sums = load_wide(first + x);
-        for (unsigned i = 1; i < config->window; i++) {
-            sums = add16(sums, load_wide(first + x + i));
+        vec16 sums = load_wide(first + x + config->window - 1u);
+        for (unsigned i = 0; i + 1u < config->window; i += 2) {
+            sums = add16(sums, load_wide(pairs + x + i));
         }
         store16(verdicts->textured + x, above16(sums, least));
     }
@@ -100,7 +104,7 @@ static void choose(const struct tsr_match_config *config, const struct winners *
         vec16 value = add16(SHIFT_LEFT16(d, 4), and16(offset_q4, inside));
         vec16 bound = load16(winners->bound + x);
         vec16 own = subtract16(subtract16(one, above16(bound, below_key)), above16(bound, above_key));
-        vec16 valid = unique_off ? splat16(-1) : equal16(load16(winners->count + x), own);
+        vec16 valid = unique_off ? splat16(-1) : equal16(find_count8(winners->counts + (size_t)x * KEPT_COUNTS), own);
         valid = and16(valid, load16(verdicts->textured + x));
         valid = and16(valid, above16(found, splat16(-1)));
         store16(choices->values + x, or16(value, xor16(valid, splat16(-1))));

@@ -202,7 +202,7 @@ INLINE void count_within(struct shape shape, int16_t *block, unsigned from, unsi
 {
     const int16_t *keys = keys_at(block, shape, 0);
     for (size_t x = from; x < from + count; x++, keys += shape.vectors * VECTOR_LEN + KEY_PAD) {
-        vec16 bound = splat16(winners->bound[x]);
+        vec16 bound = load_splat16(winners->bound + x);
         vec8 within[VECTORS_MAX];
         for (unsigned j = 0; j < shape.vectors; j++) {
             vec16 first = above16(bound, load16(keys + j * VECTOR_LEN));
@@ -210,7 +210,7 @@ INLINE void count_within(struct shape shape, int16_t *block, unsigned from, unsi
             within[j] = join8(first, second);
         }
         const int16_t *own = keys + winners->d[x];
-        winners->count[x] = (int16_t)count_lanes(within, shape.vectors);
+        keep_count8(within, shape.vectors, winners->counts + x * KEPT_COUNTS);
         winners->below[x] = own[-1];
         winners->above[x] = own[1];
     }

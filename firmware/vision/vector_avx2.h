@@ -14,6 +14,7 @@
 #define VECTOR_LEN 32u
 #define LANE_PAIR 16u
 #define KEPT_LANES 2u
+#define KEPT_COUNTS 1u
 typedef __m256i vec8;
 typedef __m256i vec16;
 
@@ -79,6 +80,11 @@ INLINE vec16 splat16(int16_t a)
     return _mm256_set1_epi16(a);
 }
 
+INLINE vec16 load_splat16(const int16_t *at)
+{
+    return _mm256_set1_epi16(*at);
+}
+
 INLINE vec8 add8(vec8 a, vec8 b)
 {
     return _mm256_add_epi8(a, b);
@@ -109,13 +115,18 @@ INLINE vec8 above8(vec8 a, vec8 b)
     return _mm256_cmpgt_epi8(a, b);
 }
 
-INLINE unsigned count_lanes(const vec8 *masks, unsigned count)
+INLINE void keep_count8(const vec8 *masks, unsigned count, int16_t *kept)
 {
-    unsigned lanes = 0;
+    int lanes = 0;
     for (unsigned i = 0; i < count; i++) {
-        lanes += (unsigned)__builtin_popcount((unsigned)_mm256_movemask_epi8(masks[i]));
+        lanes += __builtin_popcount((unsigned)_mm256_movemask_epi8(masks[i]));
     }
-    return lanes;
+    *kept = (int16_t)lanes;
+}
+
+INLINE vec16 find_count8(const int16_t *kept)
+{
+    return load16(kept);
 }
 
 INLINE vec8 probe_index8(vec8 nibbles)

@@ -8,14 +8,16 @@
  *   load8_aligned load16 store16 at multiples of VECTOR_LEN
  *   load_wide(at)                VECTOR_LEN / 2 bytes, widened
  *   narrow(low, high)            bytes again, saturated at 0 and 255
- *   splat8 splat16 reverse8
+ *   splat8 splat16 reverse8; load_splat16(at) may read four bytes
  *   add8 subtract8 and8 or8 add16 subtract16 multiply16 (low half) min16 max16
  *   and16 or16 xor16 SHIFT_...16
  *   multiply_high16(a, b)        the high half, of unsigned numbers
  *   difference8(a, b)            |a - b|, unsigned
  *   above8 above16(a, b)         lanes of ones where a > b, signed; equal16
  *   join8(low, high)             16-bit lanes of ones or zeros as bytes, in any order
- *   count_lanes(masks, count)    how many bytes of these vectors are ones, others are 0
+ *   keep_count8(masks, count, kept)      into KEPT_COUNTS of 16 bits, aligned: how many bytes
+ *                                of these vectors are ones; others are 0
+ *   find_count8(kept)            the numbers of VECTOR_LEN / 2 times that
  *   probe_index8(a)              of nibbles in bytes, what probe4() takes
  *   probe_difference4(probe4(i), a)      |n - a|, where i is the index of n
  *   pair_lanes(a)                lanes in order to the order of LANE_PAIR
@@ -37,11 +39,13 @@
 
 #include <emmintrin.h>
 #include <stdint.h>
+#include <string.h>
 
 #define INLINE static inline __attribute__((always_inline))
 #define VECTOR_LEN 16u
 #define LANE_PAIR 1u
 #define KEPT_LANES 8u
+#define KEPT_COUNTS 8u
 typedef __m128i vec8;
 typedef __m128i vec16;
 
@@ -107,6 +111,18 @@ INLINE vec16 splat16(int16_t a)
     return _mm_set1_epi16(a);
 }
 
+INLINE int load_word(const int16_t *at)
+{
+    int word;
+    memcpy(&word, at, sizeof word);
+    return word;
+}
+
+INLINE vec16 load_splat16(const int16_t *at)
+{
+    return _mm_shuffle_epi32(_mm_shufflelo_epi16(_mm_cvtsi32_si128(load_word(at)), 0), 0);
+}
+
 INLINE vec8 add8(vec8 a, vec8 b)
 {
     return _mm_add_epi8(a, b);
@@ -137,14 +153,13 @@ INLINE vec8 above8(vec8 a, vec8 b)
     return _mm_cmpgt_epi8(a, b);
 }
 
-INLINE unsigned count_lanes(const vec8 *masks, unsigned count)
+INLINE void keep_count8(const vec8 *masks, unsigned count, int16_t *kept)
 {
     __m128i lanes = _mm_setzero_si128();
     for (unsigned i = 0; i < count; i++) {
         lanes = _mm_sub_epi8(lanes, masks[i]);
     }
-    lanes = _mm_sad_epu8(lanes, _mm_setzero_si128());
-    return (unsigned)(_mm_cvtsi128_si32(lanes) + _mm_extract_epi16(lanes, 4));
+    _mm_store_si128((__m128i *)(void *)kept, _mm_sad_epu8(lanes, _mm_setzero_si128()));
 }
 
 INLINE vec8 probe_index8(vec8 nibbles)
@@ -256,6 +271,18 @@ INLINE vec16 xor16(vec16 a, vec16 b)
 #define SHIFT_LEFT16(a, n) _mm_slli_epi16(a, n)
 #define SHIFT_RIGHT16(a, n) _mm_srai_epi16(a, n)
 #define SHIFT_RIGHT_UNSIGNED16(a, n) _mm_srli_epi16(a, n)
+
+/* Each kept vector is two counts in eight bytes. */
+INLINE vec16 find_count8(const int16_t *kept)
+{
+    __m128i pairs[4];
+    for (unsigned i = 0; i < 4; i++) {
+        pairs[i] = _mm_packs_epi32(load16(kept + i * 16u), load16(kept + i * 16u + 8u));
+    }
+    __m128i low = _mm_madd_epi16(_mm_packs_epi32(pairs[0], pairs[1]), _mm_set1_epi16(1));
+    __m128i high = _mm_madd_epi16(_mm_packs_epi32(pairs[2], pairs[3]), _mm_set1_epi16(1));
+    return _mm_packs_epi32(low, high);
+}
 
 INLINE void keep_least16(vec16 a, int16_t *kept)
 {
