@@ -31,8 +31,10 @@ static const struct {
     {&tsr_match_kernel_dsp, NULL, false},
 #endif
 #if defined(TSR_MATCH_HAS_X86)
-    {&tsr_match_kernel_avx2, has_avx2, true},
-    {&tsr_match_kernel_sse2, NULL, true},
+    {&tsr_match_kernel_avx2, has_avx2, true}, {&tsr_match_kernel_sse2, NULL, true},
+#endif
+#if defined(TSR_MATCH_HAS_NEON)
+    {&tsr_match_kernel_neon, NULL, true},
 #endif
     {&tsr_match_kernel_portable, NULL, true},
 };

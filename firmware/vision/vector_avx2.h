@@ -95,24 +95,9 @@ INLINE vec8 subtract8(vec8 a, vec8 b)
     return _mm256_sub_epi8(a, b);
 }
 
-INLINE vec8 and8(vec8 a, vec8 b)
-{
-    return _mm256_and_si256(a, b);
-}
-
-INLINE vec8 or8(vec8 a, vec8 b)
-{
-    return _mm256_or_si256(a, b);
-}
-
 INLINE vec8 difference8(vec8 a, vec8 b)
 {
     return _mm256_sub_epi8(_mm256_max_epu8(a, b), _mm256_min_epu8(a, b));
-}
-
-INLINE vec8 above8(vec8 a, vec8 b)
-{
-    return _mm256_cmpgt_epi8(a, b);
 }
 
 INLINE void keep_count8(const vec8 *masks, unsigned count, int16_t *kept)
@@ -167,17 +152,6 @@ INLINE vec16 second_times16(vec8 a)
 INLINE vec8 join8(vec16 low, vec16 high)
 {
     return _mm256_packs_epi16(low, high);
-}
-
-/* Within each half register, as shuffles of bytes go. */
-INLINE vec16 zip_low8(vec8 a, vec8 b)
-{
-    return _mm256_unpacklo_epi8(a, b);
-}
-
-INLINE vec16 zip_high8(vec8 a, vec8 b)
-{
-    return _mm256_unpackhi_epi8(a, b);
 }
 
 INLINE vec16 add16(vec16 a, vec16 b)

@@ -9,11 +9,11 @@
  *   load_wide(at)                VECTOR_LEN / 2 bytes, widened
  *   narrow(low, high)            bytes again, saturated at 0 and 255
  *   splat8 splat16 reverse8; load_splat16(at) may read four bytes
- *   add8 subtract8 and8 or8 add16 subtract16 multiply16 (low half) min16 max16
+ *   add8 subtract8 add16 subtract16 multiply16 (low half) min16 max16
  *   and16 or16 xor16 SHIFT_...16
  *   multiply_high16(a, b)        the high half, of unsigned numbers
  *   difference8(a, b)            |a - b|, unsigned
- *   above8 above16(a, b)         lanes of ones where a > b, signed; equal16
+ *   above16(a, b), equal16       lanes of ones where a > b, signed; where equal
  *   join8(low, high)             16-bit lanes of ones or zeros as bytes, in any order
  *   keep_count8(masks, count, kept)      into KEPT_COUNTS of 16 bits, aligned: how many bytes
  *                                of these vectors are ones; others are 0
@@ -22,7 +22,6 @@
  *   probe_difference4(probe4(i), a)      |n - a|, where i is the index of n
  *   pair_lanes(a)                lanes in order to the order of LANE_PAIR
  *   first_times16, second_times16(a)     16 times the bytes with a sign
- *   zip_low8, zip_high8(a, b)    b << 8 | a; which lanes, only the two together say
  *   keep_least16(a, kept)        into KEPT_LANES of 16 bits, aligned, what the next one needs
  *   find_least16(kept, &least, &lane)    of VECTOR_LEN / 2 vectors so kept, in the order
  *                                of lanes: the least number, plus 2^15, and the
@@ -44,7 +43,6 @@
 #define INLINE static inline __attribute__((always_inline))
 #define VECTOR_LEN 16u
 #define LANE_PAIR 1u
-#define KEPT_LANES 8u
 #define KEPT_COUNTS 8u
 typedef __m128i vec8;
 typedef __m128i vec16;
@@ -133,24 +131,9 @@ INLINE vec8 subtract8(vec8 a, vec8 b)
     return _mm_sub_epi8(a, b);
 }
 
-INLINE vec8 and8(vec8 a, vec8 b)
-{
-    return _mm_and_si128(a, b);
-}
-
-INLINE vec8 or8(vec8 a, vec8 b)
-{
-    return _mm_or_si128(a, b);
-}
-
 INLINE vec8 difference8(vec8 a, vec8 b)
 {
     return _mm_sub_epi8(_mm_max_epu8(a, b), _mm_min_epu8(a, b));
-}
-
-INLINE vec8 above8(vec8 a, vec8 b)
-{
-    return _mm_cmpgt_epi8(a, b);
 }
 
 INLINE void keep_count8(const vec8 *masks, unsigned count, int16_t *kept)
@@ -201,16 +184,6 @@ INLINE vec16 second_times16(vec8 a)
 INLINE vec8 join8(vec16 low, vec16 high)
 {
     return _mm_packs_epi16(low, high);
-}
-
-INLINE vec16 zip_low8(vec8 a, vec8 b)
-{
-    return _mm_unpacklo_epi8(a, b);
-}
-
-INLINE vec16 zip_high8(vec8 a, vec8 b)
-{
-    return _mm_unpackhi_epi8(a, b);
 }
 
 INLINE vec16 add16(vec16 a, vec16 b)
@@ -284,41 +257,16 @@ INLINE vec16 find_count8(const int16_t *kept)
     return _mm_packs_epi32(low, high);
 }
 
-INLINE void keep_least16(vec16 a, int16_t *kept)
+INLINE vec16 zip_low16(vec16 a, vec16 b)
 {
-    store16(kept, a);
+    return _mm_unpacklo_epi16(a, b);
 }
 
-/* Rows a, b of lanes become rows of pairs, so three times of eight rows of lanes eight of columns. */
-INLINE void zip_rows(const vec16 *rows, vec16 *zipped)
+INLINE vec16 zip_high16(vec16 a, vec16 b)
 {
-    for (unsigned i = 0; i < 4; i++) {
-        zipped[2u * i] = _mm_unpacklo_epi16(rows[i], rows[i + 4u]);
-        zipped[2u * i + 1u] = _mm_unpackhi_epi16(rows[i], rows[i + 4u]);
-    }
+    return _mm_unpackhi_epi16(a, b);
 }
 
-INLINE void find_least16(const int16_t *kept, vec16 *least, vec16 *lane)
-{
-    vec16 rows[8];
-    vec16 lanes[8];
-    for (unsigned i = 0; i < 8; i++) {
-        rows[i] = load16(kept + i * KEPT_LANES);
-    }
-    zip_rows(rows, lanes);
-    zip_rows(lanes, rows);
-    zip_rows(rows, lanes);
-    vec16 low = min16(min16(lanes[0], lanes[1]), min16(lanes[2], lanes[3]));
-    vec16 high = min16(min16(lanes[4], lanes[5]), min16(lanes[6], lanes[7]));
-    vec16 found = min16(low, high);
-    vec16 above = _mm_cmpgt_epi16(lanes[0], found); /* ones as long as no lane was the least */
-    vec16 passed = above;
-    for (unsigned i = 1; i < 7; i++) {
-        above = and16(above, _mm_cmpgt_epi16(lanes[i], found));
-        passed = add16(passed, above);
-    }
-    *least = xor16(found, splat16(INT16_MIN));
-    *lane = subtract16(_mm_setzero_si128(), passed);
-}
+#include "vector_least.h"
 
 #endif
