@@ -252,7 +252,7 @@ enum tsr_status tsr_match_start(struct tsr_match *match, const struct tsr_match_
     if (!may_overlay(&resolved, &left, map) || !may_overlay(&resolved, &right, map)) {
         return TSR_ERR_ARG;
     }
-    bool covered = resolved.search_start_px >= 0;
+    bool covered = resolved.search_start_px >= 0 || resolved.kernel->any_start;
     const struct tsr_match_kernel *kernel = covered ? resolved.kernel : &tsr_match_kernel_portable;
     *match = (struct tsr_match){resolved, left, right, map, scratch, kernel, 0};
     return TSR_OK;
@@ -261,9 +261,7 @@ enum tsr_status tsr_match_start(struct tsr_match *match, const struct tsr_match_
 static void warm_up(const struct tsr_match *match, unsigned row, unsigned radius)
 {
     if (row == 0) {
-        struct tsr_match_scratch scratch = tsr_match_share_scratch(match);
-        memset(scratch.columns, 0, (size_t)match->config.width * match->config.disparities);
-        memset(scratch.texture, 0, match->config.width);
+        memset(match->scratch, 0, TSR_MATCH_SCRATCH_LEN(match->config.width, match->config.disparities));
     }
     match->kernel->add_row(match, row, row == 0 ? radius + 2u : 1u);
 }

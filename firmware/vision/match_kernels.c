@@ -16,19 +16,18 @@ const struct tsr_match_kernel tsr_match_kernel_portable = {
     .prefilter_row = tsr_match_prefilter_row,
     .add_row = tsr_match_add_row,
     .match_row = move_and_finish,
+    .any_start = true,
     TSR_MATCH_PORTABLE_CENSUS,
 };
 
 #if defined(TSR_MATCH_HAS_X86)
 static bool has_avx2(void)
 {
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") &&
-           __builtin_cpu_supports("popcnt");
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt");
 }
 #endif
 
 /* The fastest first. */
-/* clang-format off */
 static const struct {
     const struct tsr_match_kernel *kernel;
     bool (*is_supported)(void);
@@ -40,12 +39,13 @@ static const struct {
     {&tsr_match_kernel_dsp, NULL},
 #endif
 #if defined(TSR_MATCH_HAS_X86)
-    {&tsr_match_kernel_avx2, has_avx2},
-    {&tsr_match_kernel_sse2, NULL},
+    {&tsr_match_kernel_avx2, has_avx2}, {&tsr_match_kernel_sse2, NULL},
+#endif
+#if defined(TSR_MATCH_HAS_NEON)
+    {&tsr_match_kernel_neon, NULL},
 #endif
     {&tsr_match_kernel_portable, NULL},
 };
-/* clang-format on */
 
 const struct tsr_match_kernel *tsr_match_kernel_at(unsigned index)
 {

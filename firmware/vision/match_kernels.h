@@ -34,4 +34,10 @@ extern const struct tsr_match_kernel tsr_match_kernel_sse2;
 extern const struct tsr_match_kernel tsr_match_kernel_avx2;
 #endif
 
+/* Advanced SIMD belongs to AArch64 (Arm ARM, A1.5). */
+#if defined(__aarch64__)
+#define TSR_MATCH_HAS_NEON
+extern const struct tsr_match_kernel tsr_match_kernel_neon;
+#endif
+
 #endif

@@ -72,6 +72,8 @@ struct tsr_match_kernel {
      * y + 1 and the paths, eqs. (42) to (46). Rows in ascending order. */
     void (*cost_row)(const struct tsr_match *match, unsigned y);
     void (*smooth_row)(const struct tsr_match *match, unsigned y);
+
+    bool any_start; /* or search_start_px >= 0 only, and the portable kernel does the others */
 };
 
 extern const struct tsr_match_kernel tsr_match_kernel_portable;

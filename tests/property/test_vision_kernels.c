@@ -1,7 +1,7 @@
 /*
  * Every kernel of the matcher that runs here gives the portable one's map, bit
- * for bit: all windows, disparity counts, modes and caps, odd sizes, strides and
- * alignments, any content, tests on and off. Runs on the host and on the board.
+ * for bit: all windows, disparity counts, search starts, modes and caps, odd sizes,
+ * strides and alignments, any content, tests on and off. Runs on the host and on the board.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -230,7 +230,8 @@ static void sweep(unsigned mode, unsigned window_max)
                                               .mode = (uint8_t)mode};
             config.prefilter_cap = (uint8_t)(below(4) == 0 ? 1 : 0);
             if (width > disparities && below(3) == 0) {
-                config.search_start_px = (int16_t)below(width - disparities + 1u);
+                int start = (int)below(width - disparities + 1u);
+                config.search_start_px = (int16_t)(below(2) == 0 ? -start : start);
             }
             compare_contents(config, 3);
         }

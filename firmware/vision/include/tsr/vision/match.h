@@ -68,7 +68,7 @@ struct tsr_match_config {
 /*
  * The kernels that run on this machine, the fastest first, the portable one
  * last; null from there on. All give the same bits; a kernel leaves to the
- * portable one what it does not cover (search_start_px < 0 at present).
+ * portable one what it does not cover (the DSP kernel search_start_px < 0).
  */
 const struct tsr_match_kernel *tsr_match_kernel_at(unsigned index);
 const char *tsr_match_kernel_name(const struct tsr_match_kernel *kernel);

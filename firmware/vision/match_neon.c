@@ -1,0 +1,22 @@
+/*
+ * The matcher's kernel for AArch64, whose Advanced SIMD every one has: 16 disparities at once.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include "match_kernels.h"
+
+#ifdef TSR_MATCH_HAS_NEON
+
+#include "vector_neon.h"
+#define HELD_MAX 6u /* of 32 registers */
+#include "match_vector_kernel.h"
+
+const struct tsr_match_kernel tsr_match_kernel_neon = {
+    .name = "neon",
+    .prefilter_row = prefilter_row,
+    .add_row = warm_up_row,
+    .match_row = match_row,
+    TSR_MATCH_PORTABLE_CENSUS,
+    .any_start = true,
+};
+#endif

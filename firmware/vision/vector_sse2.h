@@ -1,0 +1,272 @@
+/*
+ * Vectors of 16 bytes on x86-64, whose SSE2 every one has: the operations that
+ * the kernels in vectors are written in. vector_avx2.h and vector_neon.h give
+ * the same ones; a source file includes one of them.
+ *
+ *   VECTOR_LEN, vec8, vec16      bytes in a vector; of uint8_t, of int16_t
+ *   load8 store8 load16_anywhere store16_anywhere
+ *   load8_aligned load16 store16 at multiples of VECTOR_LEN
+ *   load_wide(at)                VECTOR_LEN / 2 bytes, widened
+ *   narrow(low, high)            bytes again, saturated at 0 and 255
+ *   splat8 splat16 reverse8; load_splat16(at) may read four bytes
+ *   add8 subtract8 add16 subtract16 multiply16 (low half) min16 max16
+ *   and16 or16 xor16 SHIFT_...16
+ *   multiply_high16(a, b)        the high half, of unsigned numbers
+ *   difference8(a, b)            |a - b|, unsigned
+ *   above16(a, b), equal16       lanes of ones where a > b, signed; where equal
+ *   join8(low, high)             16-bit lanes of ones or zeros as bytes, in any order
+ *   keep_count8(masks, count, kept)      into KEPT_COUNTS of 16 bits, aligned: how many bytes
+ *                                of these vectors are ones; others are 0
+ *   find_count8(kept)            the numbers of VECTOR_LEN / 2 times that
+ *   probe_index8(a)              of nibbles in bytes, what probe4() takes
+ *   probe_difference4(probe4(i), a)      |n - a|, where i is the index of n
+ *   pair_lanes(a)                lanes in order to the order of LANE_PAIR
+ *   first_times16, second_times16(a)     16 times the bytes with a sign
+ *   keep_least16(a, kept)        into KEPT_LANES of 16 bits, aligned, what the next one needs
+ *   find_least16(kept, &least, &lane)    of VECTOR_LEN / 2 vectors so kept, in the order
+ *                                of lanes: the least number, plus 2^15, and the
+ *                                first lane modulo 8 that has it
+ *
+ * Where lanes are widened a vector of bytes becomes two: lanes first to
+ * first + VECTOR_LEN / 2 - 1 and the others. With LANE_PAIR = 1 they are lanes in
+ * order; otherwise bytes 2 i and 2 i + 1 hold lanes i and i + LANE_PAIR.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_VISION_VECTOR_SSE2_H
+#define TSR_VISION_VECTOR_SSE2_H
+
+#include <emmintrin.h>
+#include <stdint.h>
+#include <string.h>
+
+#define INLINE static inline __attribute__((always_inline))
+#define VECTOR_LEN 16u
+#define LANE_PAIR 1u
+#define KEPT_COUNTS 8u
+typedef __m128i vec8;
+typedef __m128i vec16;
+
+INLINE vec8 load8(const uint8_t *at)
+{
+    return _mm_loadu_si128((const __m128i *)(const void *)at);
+}
+
+INLINE vec8 load8_aligned(const uint8_t *at)
+{
+    return _mm_load_si128((const __m128i *)(const void *)at);
+}
+
+INLINE void store8(uint8_t *at, vec8 a)
+{
+    _mm_storeu_si128((__m128i *)(void *)at, a);
+}
+
+INLINE vec16 load16(const int16_t *at)
+{
+    return _mm_load_si128((const __m128i *)(const void *)at);
+}
+
+INLINE vec16 load16_anywhere(const int16_t *at)
+{
+    return _mm_loadu_si128((const __m128i *)(const void *)at);
+}
+
+INLINE void store16(int16_t *at, vec16 a)
+{
+    _mm_store_si128((__m128i *)(void *)at, a);
+}
+
+INLINE void store16_anywhere(int16_t *at, vec16 a)
+{
+    _mm_storeu_si128((__m128i *)(void *)at, a);
+}
+
+INLINE vec16 load_wide(const uint8_t *at)
+{
+    return _mm_unpacklo_epi8(_mm_loadl_epi64((const __m128i *)(const void *)at), _mm_setzero_si128());
+}
+
+INLINE vec8 narrow(vec16 low, vec16 high)
+{
+    return _mm_packus_epi16(low, high);
+}
+
+INLINE vec8 reverse8(vec8 a)
+{
+    a = _mm_or_si128(_mm_slli_epi16(a, 8), _mm_srli_epi16(a, 8));
+    a = _mm_shufflehi_epi16(_mm_shufflelo_epi16(a, _MM_SHUFFLE(0, 1, 2, 3)), _MM_SHUFFLE(0, 1, 2, 3));
+    return _mm_shuffle_epi32(a, _MM_SHUFFLE(1, 0, 3, 2));
+}
+
+INLINE vec8 splat8(uint8_t a)
+{
+    return _mm_set1_epi8((char)a);
+}
+
+INLINE vec16 splat16(int16_t a)
+{
+    return _mm_set1_epi16(a);
+}
+
+INLINE int load_word(const int16_t *at)
+{
+    int word;
+    memcpy(&word, at, sizeof word);
+    return word;
+}
+
+INLINE vec16 load_splat16(const int16_t *at)
+{
+    return _mm_shuffle_epi32(_mm_shufflelo_epi16(_mm_cvtsi32_si128(load_word(at)), 0), 0);
+}
+
+INLINE vec8 add8(vec8 a, vec8 b)
+{
+    return _mm_add_epi8(a, b);
+}
+
+INLINE vec8 subtract8(vec8 a, vec8 b)
+{
+    return _mm_sub_epi8(a, b);
+}
+
+INLINE vec8 difference8(vec8 a, vec8 b)
+{
+    return _mm_sub_epi8(_mm_max_epu8(a, b), _mm_min_epu8(a, b));
+}
+
+INLINE void keep_count8(const vec8 *masks, unsigned count, int16_t *kept)
+{
+    __m128i lanes = _mm_setzero_si128();
+    for (unsigned i = 0; i < count; i++) {
+        lanes = _mm_sub_epi8(lanes, masks[i]);
+    }
+    _mm_store_si128((__m128i *)(void *)kept, _mm_sad_epu8(lanes, _mm_setzero_si128()));
+}
+
+INLINE vec8 probe_index8(vec8 nibbles)
+{
+    return _mm_slli_epi16(nibbles, 4);
+}
+
+INLINE vec8 probe4(uint8_t index)
+{
+    static const _Alignas(16) uint64_t splats[16][2] = {
+#define SPLAT(n) {n * UINT64_C(0x0101010101010101), n * UINT64_C(0x0101010101010101)}
+        SPLAT(0), SPLAT(1), SPLAT(2),  SPLAT(3),  SPLAT(4),  SPLAT(5),  SPLAT(6),  SPLAT(7),
+        SPLAT(8), SPLAT(9), SPLAT(10), SPLAT(11), SPLAT(12), SPLAT(13), SPLAT(14), SPLAT(15),
+#undef SPLAT
+    };
+    return _mm_load_si128((const __m128i *)(const void *)((const uint8_t *)splats + index));
+}
+
+INLINE vec8 probe_difference4(vec8 probe, vec8 nibbles)
+{
+    return difference8(probe, nibbles);
+}
+
+INLINE vec8 pair_lanes(vec8 a)
+{
+    return a;
+}
+
+INLINE vec16 first_times16(vec8 a)
+{
+    return _mm_srai_epi16(_mm_unpacklo_epi8(_mm_setzero_si128(), a), 4);
+}
+
+INLINE vec16 second_times16(vec8 a)
+{
+    return _mm_srai_epi16(_mm_unpackhi_epi8(_mm_setzero_si128(), a), 4);
+}
+
+INLINE vec8 join8(vec16 low, vec16 high)
+{
+    return _mm_packs_epi16(low, high);
+}
+
+INLINE vec16 add16(vec16 a, vec16 b)
+{
+    return _mm_add_epi16(a, b);
+}
+
+INLINE vec16 subtract16(vec16 a, vec16 b)
+{
+    return _mm_sub_epi16(a, b);
+}
+
+INLINE vec16 multiply16(vec16 a, vec16 b)
+{
+    return _mm_mullo_epi16(a, b);
+}
+
+INLINE vec16 multiply_high16(vec16 a, vec16 b)
+{
+    return _mm_mulhi_epu16(a, b);
+}
+
+INLINE vec16 min16(vec16 a, vec16 b)
+{
+    return _mm_min_epi16(a, b);
+}
+
+INLINE vec16 max16(vec16 a, vec16 b)
+{
+    return _mm_max_epi16(a, b);
+}
+
+INLINE vec16 above16(vec16 a, vec16 b)
+{
+    return _mm_cmpgt_epi16(a, b);
+}
+
+INLINE vec16 equal16(vec16 a, vec16 b)
+{
+    return _mm_cmpeq_epi16(a, b);
+}
+
+INLINE vec16 and16(vec16 a, vec16 b)
+{
+    return _mm_and_si128(a, b);
+}
+
+INLINE vec16 or16(vec16 a, vec16 b)
+{
+    return _mm_or_si128(a, b);
+}
+
+INLINE vec16 xor16(vec16 a, vec16 b)
+{
+    return _mm_xor_si128(a, b);
+}
+
+#define SHIFT_LEFT16(a, n) _mm_slli_epi16(a, n)
+#define SHIFT_RIGHT16(a, n) _mm_srai_epi16(a, n)
+#define SHIFT_RIGHT_UNSIGNED16(a, n) _mm_srli_epi16(a, n)
+
+/* Each kept vector is two counts in eight bytes. */
+INLINE vec16 find_count8(const int16_t *kept)
+{
+    __m128i pairs[4];
+    for (unsigned i = 0; i < 4; i++) {
+        pairs[i] = _mm_packs_epi32(load16(kept + i * 16u), load16(kept + i * 16u + 8u));
+    }
+    __m128i low = _mm_madd_epi16(_mm_packs_epi32(pairs[0], pairs[1]), _mm_set1_epi16(1));
+    __m128i high = _mm_madd_epi16(_mm_packs_epi32(pairs[2], pairs[3]), _mm_set1_epi16(1));
+    return _mm_packs_epi32(low, high);
+}
+
+INLINE vec16 zip_low16(vec16 a, vec16 b)
+{
+    return _mm_unpacklo_epi16(a, b);
+}
+
+INLINE vec16 zip_high16(vec16 a, vec16 b)
+{
+    return _mm_unpackhi_epi16(a, b);
+}
+
+#include "vector_least.h"
+
+#endif
