@@ -16,13 +16,18 @@
 #include "vector_avx2.h"
 #define HELD_MAX 3u
 #include "match_vector_kernel.h"
+#include "match_vector_smooth.h"
 
 const struct tsr_match_kernel tsr_match_kernel_avx2 = {
     .name = "avx2",
     .prefilter_row = prefilter_row,
     .add_row = warm_up_row,
     .match_row = match_row,
-    TSR_MATCH_PORTABLE_CENSUS,
+    .describe_row = describe_row,
+    .add_census = add_census,
+    .census_row = census_row,
+    .cost_row = cost_row,
+    .smooth_row = smooth_row,
     .any_start = true,
 };
 

@@ -89,6 +89,7 @@ static void choose(const struct tsr_match_config *config, const struct winners *
                    const struct verdicts *verdicts, struct choices *choices)
 {
     bool unique_off = config->uniqueness_percent == TSR_MATCH_TEST_OFF;
+    bool whole_claims = tsr_match_claim_shift(config->mode) == 0;
     vec16 one = splat16(1);
     static const _Alignas(32) int16_t counting[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     vec16 right = subtract16(load16(counting), splat16(config->search_start_px)); /* of d = 0 */
@@ -110,7 +111,8 @@ static void choose(const struct tsr_match_config *config, const struct winners *
         store16(choices->values + x, or16(value, xor16(valid, splat16(-1))));
         store16(choices->rights + x, subtract16(right, d));
         right = add16(right, splat16(LANES16));
-        store16(choices->claims + x, or16(SHIFT_LEFT16(SHIFT_RIGHT16(sum, 2), 7), d));
+        vec16 level = whole_claims ? sum : SHIFT_RIGHT16(sum, 2);
+        store16(choices->claims + x, or16(SHIFT_LEFT16(level, 7), d));
     }
 }
 

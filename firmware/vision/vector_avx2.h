@@ -100,6 +100,64 @@ INLINE vec8 difference8(vec8 a, vec8 b)
     return _mm256_sub_epi8(_mm256_max_epu8(a, b), _mm256_min_epu8(a, b));
 }
 
+INLINE vec8 min8(vec8 a, vec8 b)
+{
+    return _mm256_min_epu8(a, b);
+}
+
+INLINE vec8 add_saturated8(vec8 a, vec8 b)
+{
+    return _mm256_adds_epu8(a, b);
+}
+
+INLINE vec8 xor8(vec8 a, vec8 b)
+{
+    return _mm256_xor_si256(a, b);
+}
+
+INLINE vec8 at_most8(vec8 a, vec8 b)
+{
+    return _mm256_cmpeq_epi8(_mm256_min_epu8(a, b), a);
+}
+
+/* A shuffle looks up nibbles. */
+INLINE vec8 count_bits8(vec8 a)
+{
+    const __m256i counts = _mm256_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4, 0, 1, 1, 2, 1, 2, 2, 3, 1,
+                                            2, 2, 3, 2, 3, 3, 4);
+    const __m256i nibble = _mm256_set1_epi8(0x0f);
+    __m256i low = _mm256_shuffle_epi8(counts, _mm256_and_si256(a, nibble));
+    return _mm256_add_epi8(low, _mm256_shuffle_epi8(counts, _mm256_and_si256(_mm256_srli_epi16(a, 4), nibble)));
+}
+
+INLINE vec8 quarter8(vec8 a)
+{
+    return _mm256_and_si256(_mm256_srli_epi16(a, 2), _mm256_set1_epi8(0x3f));
+}
+
+INLINE vec8 before8(vec8 a, vec8 previous)
+{
+    return _mm256_alignr_epi8(a, _mm256_permute2x128_si256(previous, a, 0x21), 15);
+}
+
+INLINE vec8 behind8(vec8 a, vec8 next)
+{
+    return _mm256_alignr_epi8(_mm256_permute2x128_si256(a, next, 0x21), a, 1);
+}
+
+/* The instruction finds the least of eight numbers of 16 bits. */
+INLINE vec8 spread_least8(vec8 a)
+{
+    __m128i half = _mm_min_epu8(_mm256_castsi256_si128(a), _mm256_extracti128_si256(a, 1));
+    half = _mm_minpos_epu16(_mm_min_epu8(half, _mm_srli_epi16(half, 8)));
+    return _mm256_broadcastb_epi8(half);
+}
+
+INLINE uint8_t first_byte8(vec8 a)
+{
+    return (uint8_t)_mm256_cvtsi256_si32(a);
+}
+
 INLINE void keep_count8(const vec8 *masks, unsigned count, int16_t *kept)
 {
     int lanes = 0;

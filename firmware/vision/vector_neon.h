@@ -97,6 +97,56 @@ INLINE vec8 difference8(vec8 a, vec8 b)
     return vabdq_u8(a, b);
 }
 
+INLINE vec8 min8(vec8 a, vec8 b)
+{
+    return vminq_u8(a, b);
+}
+
+INLINE vec8 add_saturated8(vec8 a, vec8 b)
+{
+    return vqaddq_u8(a, b);
+}
+
+INLINE vec8 xor8(vec8 a, vec8 b)
+{
+    return veorq_u8(a, b);
+}
+
+INLINE vec8 at_most8(vec8 a, vec8 b)
+{
+    return vcleq_u8(a, b);
+}
+
+INLINE vec8 count_bits8(vec8 a)
+{
+    return vcntq_u8(a);
+}
+
+INLINE vec8 quarter8(vec8 a)
+{
+    return vshrq_n_u8(a, 2);
+}
+
+INLINE vec8 before8(vec8 a, vec8 previous)
+{
+    return vextq_u8(previous, a, 15);
+}
+
+INLINE vec8 behind8(vec8 a, vec8 next)
+{
+    return vextq_u8(a, next, 1);
+}
+
+INLINE vec8 spread_least8(vec8 a)
+{
+    return vdupq_n_u8(vminvq_u8(a));
+}
+
+INLINE uint8_t first_byte8(vec8 a)
+{
+    return vgetq_lane_u8(a, 0);
+}
+
 INLINE void keep_count8(const vec8 *masks, unsigned count, int16_t *kept)
 {
     vec8 lanes = vdupq_n_u8(0);

@@ -13,6 +13,14 @@
  *   and16 or16 xor16 SHIFT_...16
  *   multiply_high16(a, b)        the high half, of unsigned numbers
  *   difference8(a, b)            |a - b|, unsigned
+ *   min8 add_saturated8 xor8     of unsigned bytes
+ *   at_most8(a, b)               bytes of ones where a <= b, unsigned
+ *   count_bits8(a)               bits set in each byte
+ *   quarter8(a)                  a / 4, unsigned
+ *   before8(a, previous)         bytes moved up by a lane, behind the last of previous
+ *   behind8(a, next)             moved down by a lane, before the first of next
+ *   spread_least8(a)             the least byte, unsigned, in every byte
+ *   first_byte8(a)
  *   above16(a, b), equal16       lanes of ones where a > b, signed; where equal
  *   join8(low, high)             16-bit lanes of ones or zeros as bytes, in any order
  *   keep_count8(masks, count, kept)      into KEPT_COUNTS of 16 bits, aligned: how many bytes
@@ -134,6 +142,64 @@ INLINE vec8 subtract8(vec8 a, vec8 b)
 INLINE vec8 difference8(vec8 a, vec8 b)
 {
     return _mm_sub_epi8(_mm_max_epu8(a, b), _mm_min_epu8(a, b));
+}
+
+INLINE vec8 min8(vec8 a, vec8 b)
+{
+    return _mm_min_epu8(a, b);
+}
+
+INLINE vec8 add_saturated8(vec8 a, vec8 b)
+{
+    return _mm_adds_epu8(a, b);
+}
+
+INLINE vec8 xor8(vec8 a, vec8 b)
+{
+    return _mm_xor_si128(a, b);
+}
+
+INLINE vec8 at_most8(vec8 a, vec8 b)
+{
+    return _mm_cmpeq_epi8(_mm_min_epu8(a, b), a);
+}
+
+/* Fields of 2, 4 and 8 bits. */
+INLINE vec8 count_bits8(vec8 a)
+{
+    const __m128i twos = _mm_set1_epi8(0x55);
+    const __m128i fours = _mm_set1_epi8(0x33);
+    a = _mm_sub_epi8(a, _mm_and_si128(_mm_srli_epi16(a, 1), twos));
+    a = _mm_add_epi8(_mm_and_si128(a, fours), _mm_and_si128(_mm_srli_epi16(a, 2), fours));
+    return _mm_and_si128(_mm_add_epi8(a, _mm_srli_epi16(a, 4)), _mm_set1_epi8(0x0f));
+}
+
+INLINE vec8 quarter8(vec8 a)
+{
+    return _mm_and_si128(_mm_srli_epi16(a, 2), _mm_set1_epi8(0x3f));
+}
+
+INLINE vec8 before8(vec8 a, vec8 previous)
+{
+    return _mm_or_si128(_mm_slli_si128(a, 1), _mm_srli_si128(previous, 15));
+}
+
+INLINE vec8 behind8(vec8 a, vec8 next)
+{
+    return _mm_or_si128(_mm_srli_si128(a, 1), _mm_slli_si128(next, 15));
+}
+
+INLINE vec8 spread_least8(vec8 a)
+{
+    a = _mm_min_epu8(a, _mm_shuffle_epi32(a, _MM_SHUFFLE(1, 0, 3, 2)));
+    a = _mm_min_epu8(a, _mm_shuffle_epi32(a, _MM_SHUFFLE(2, 3, 0, 1)));
+    a = _mm_min_epu8(a, _mm_or_si128(_mm_slli_epi32(a, 16), _mm_srli_epi32(a, 16)));
+    return _mm_min_epu8(a, _mm_or_si128(_mm_slli_epi16(a, 8), _mm_srli_epi16(a, 8)));
+}
+
+INLINE uint8_t first_byte8(vec8 a)
+{
+    return (uint8_t)_mm_cvtsi128_si32(a);
 }
 
 INLINE void keep_count8(const vec8 *masks, unsigned count, int16_t *kept)
