@@ -5,7 +5,6 @@
  * SPDX-License-Identifier: Apache-2.0
  */
 #define _POSIX_C_SOURCE 200809L
-#include <dirent.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -16,87 +15,20 @@
 #include "fuzz_codec_gray.c"
 #undef LLVMFuzzerTestOneInput
 
-#include "codec_random.h"
-#include "unity.h"
+#include "corpus_replay.h"
 
-#define FILE_LEN_MAX 2048
-#define MUTATIONS_PER_FILE 600
+#define MUTATIONS 600 /* of every file */
 
 void setUp(void) {}
 void tearDown(void) {}
 
-/* Bytes in a block of exactly their length, so that a sanitizer sees every overrun. */
-static void try_bytes(int (*harness)(const uint8_t *, size_t), const uint8_t *bytes, size_t len)
-{
-    uint8_t *exact = malloc(len > 0 ? len : 1);
-    TEST_ASSERT_NOT_NULL(exact);
-    memcpy(exact, bytes, len);
-    (void)harness(exact, len);
-    free(exact);
-}
-
-static size_t mutate(struct codec_random *random, uint8_t *bytes, size_t len)
-{
-    const unsigned count = 1 + codec_random_below(random, 4);
-    for (unsigned i = 0; i < count && len > 0; i++) {
-        const size_t at = codec_random_below(random, (uint32_t)len);
-        switch (codec_random_below(random, 5)) {
-        case 0: bytes[at] = (uint8_t)codec_random_next(random); break;
-        case 1: bytes[at] ^= (uint8_t)(1u << codec_random_below(random, 8)); break;
-        case 2: len = at; break;
-        case 3: memset(bytes + at, codec_random_below(random, 2) == 0 ? 0 : 0xff, len - at); break;
-        default: memmove(bytes + at, bytes + at / 2, len - at); break;
-        }
-    }
-    return len;
-}
-
-static unsigned replay_file(int (*harness)(const uint8_t *, size_t), const char *path)
-{
-    uint8_t bytes[FILE_LEN_MAX];
-    FILE *file = fopen(path, "rb");
-    TEST_ASSERT_NOT_NULL_MESSAGE(file, path);
-    const size_t len = fread(bytes, 1, sizeof bytes, file);
-    (void)fclose(file);
-    try_bytes(harness, bytes, len);
-    const uint64_t first = codec_setting("SEED", 1);
-    const uint64_t end = first + codec_setting("RUNS", MUTATIONS_PER_FILE);
-    for (uint64_t seed = first; seed < end; seed++) {
-        uint8_t mutated[FILE_LEN_MAX];
-        struct codec_random random = codec_random_of_seed(seed);
-        memcpy(mutated, bytes, len);
-        try_bytes(harness, mutated, mutate(&random, mutated, len));
-    }
-    return 1;
-}
-
-static void replay_folder(int (*harness)(const uint8_t *, size_t), const char *folder)
-{
-    const char *source = getenv("TSR_SOURCE");
-    char path[1024];
-    unsigned file_count = 0;
-    TEST_ASSERT_NOT_NULL_MESSAGE(source, "TSR_SOURCE is not set");
-    (void)snprintf(path, sizeof path, "%s/tests/fuzz/%s", source, folder);
-    DIR *dir = opendir(path);
-    TEST_ASSERT_NOT_NULL_MESSAGE(dir, path);
-    for (const struct dirent *entry = readdir(dir); entry != NULL; entry = readdir(dir)) {
-        if (entry->d_name[0] != '.') {
-            (void)snprintf(path, sizeof path, "%s/tests/fuzz/%s/%s", source, folder, entry->d_name);
-            file_count += replay_file(harness, path);
-        }
-    }
-    (void)closedir(dir);
-    printf("%s: %u files\n", folder, file_count);
-    TEST_ASSERT_GREATER_THAN(0, file_count);
-}
-
 static void test_map_corpus(void)
 {
-    replay_folder(fuzz_map_one_input, "corpus_codec_map");
+    corpus_replay(fuzz_map_one_input, "corpus_codec_map", MUTATIONS);
 }
 static void test_gray_corpus(void)
 {
-    replay_folder(fuzz_gray_one_input, "corpus_codec_gray");
+    corpus_replay(fuzz_gray_one_input, "corpus_codec_gray", MUTATIONS);
 }
 
 int main(int argc, char **argv)
