@@ -117,28 +117,27 @@ void tsr_dsp_prefilter_row(const struct tsr_match *match, unsigned y)
     filter_row(&match->right, y, kept + 2u * match->config.width, cap, true);
 }
 
-/* Lanes of a column that does not have them all get what lies behind the row's
- * end, or nothing: they are written when they start. */
 void tsr_dsp_add_row(const struct tsr_match *match, unsigned y, unsigned times)
 {
     const struct tsr_match_config *config = &match->config;
     struct tsr_match_scratch scratch = tsr_match_share_scratch(match);
-    unsigned start = (unsigned)config->search_start_px;
-    unsigned disparities = config->disparities;
+    int start = config->search_start_px;
+    int radius = config->window / 2;
     const uint8_t *left = match->left.pixels + (size_t)y * match->left.stride;
-    const uint8_t *right = match->right.pixels + (size_t)y * match->right.stride + (config->width - 1u);
-    for (unsigned x = 0; x < config->width - start; x++) {
-        uint8_t *column = scratch.columns + (size_t)x * disparities;
-        uint32_t pixel = left[start + x] * 0x01010101u;
-        unsigned lanes = x + 1u < disparities ? x + 1u : disparities;
-        unsigned d = 0;
-        for (; d + 4u <= lanes; d += 4u) {
-            uint32_t difference = tsr_dsp_difference(pixel, tsr_dsp_load(right - x + d));
-            tsr_dsp_store(column + d, tsr_dsp_load(column + d) + times * difference);
+    const uint8_t *right = match->right.pixels + (size_t)y * match->right.stride;
+    uint8_t *edge = match->scratch;
+    tsr_dsp_fill_edge(config, right, edge);
+    for (int x = start > radius ? start - radius : 0; x < config->width; x++) {
+        uint8_t *column = scratch.columns + (size_t)x * config->disparities;
+        const uint8_t *first = right + (config->width - 1 - x + start);
+        if (x - start < config->disparities - 1) {
+            first = tsr_dsp_at_edge(config, edge, x - start);
         }
-        for (; d < lanes; d++) {
-            uint32_t difference = tsr_dsp_difference(pixel & 0xffu, right[(int)d - (int)x]);
-            column[d] = (uint8_t)(column[d] + times * difference);
+        uint32_t pixel = left[x] * 0x01010101u;
+        unsigned lanes = TSR_DSP_GROUP_LANES * tsr_dsp_count_groups(config, x - start);
+        for (unsigned d = 0; d < lanes; d += 4u) {
+            uint32_t difference = tsr_dsp_difference(pixel, tsr_dsp_load(first + d));
+            tsr_dsp_store(column + d, tsr_dsp_load(column + d) + times * difference);
         }
     }
     for (unsigned x = 0; x < config->width; x++) {
