@@ -67,7 +67,7 @@ def emulator_table():
     return dict(zip(KINDS, values[1:]))
 
 
-def match_per_output(shape, rows):
+def match_per_output(shape, rows, name="match"):
     """Instructions per pixel and disparity of the map, prefilter and warm-up rows included."""
     width, height, disparities = shape
-    return next(count for work, _, count in rows if work == "match") / (width * height * disparities)
+    return next(count for work, _, count in rows if work == name) / (width * height * disparities)
