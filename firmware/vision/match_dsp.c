@@ -31,11 +31,6 @@ void tsr_dsp_fill_edge(const struct tsr_match_config *config, const uint8_t *rig
     memset(edge + inside, right[config->width - 1u], TSR_DSP_EDGE_LEN(config->disparities) - inside);
 }
 
-static unsigned start_of(const struct tsr_dsp_row *row)
-{
-    return (unsigned)row->config->search_start_px; /* not negative: match.c */
-}
-
 /* eq. (15); a scale of 0 lets every sum be above the limit. */
 static void begin_tests(struct tsr_dsp_frame *frame, const struct tsr_dsp_row *row)
 {
@@ -67,7 +62,7 @@ static void begin_sums(struct tsr_dsp_frame *frame, const struct tsr_dsp_row *ro
     const struct tsr_match_config *config = row->config;
     int start = config->search_start_px;
     int radius = config->window / 2;
-    for (unsigned i = 0; i < config->disparities / 2u; i++) {
+    for (unsigned i = 0; i <= config->disparities / 2u; i++) {
         frame->sums[i] = OUT_OF_REACH * 0x10001u;
     }
     for (int x = start > radius ? start - radius : 0; x < start + radius; x++) {
@@ -91,12 +86,15 @@ static void begin_sums(struct tsr_dsp_frame *frame, const struct tsr_dsp_row *ro
 void tsr_dsp_begin(struct tsr_dsp_frame *frame, const struct tsr_dsp_row *row)
 {
     const struct tsr_match_config *config = row->config;
-    unsigned radius = config->window / 2u;
-    unsigned start = start_of(row);
+    unsigned radius = row->radius;
+    unsigned start = row->start;
     unsigned least_count = (config->disparities / TSR_DSP_GROUP_LANES + TSR_DSP_LEAST_WORDS - 1u) / TSR_DSP_LEAST_WORDS;
     frame->row = row;
     frame->x = start;
+    frame->change = start;
     frame->ones = 0x01010101u;
+    frame->ones_again = frame->ones;
+    frame->lane_key = 0x08040201u;
     frame->stride = config->disparities;
     frame->minus_two = -2;
     frame->none = UINT32_MAX;
@@ -123,29 +121,35 @@ void tsr_dsp_begin(struct tsr_dsp_frame *frame, const struct tsr_dsp_row *row)
 static void narrow_sums(struct tsr_dsp_frame *frame)
 {
     unsigned groups = frame->stride / TSR_DSP_GROUP_LANES;
-    for (unsigned i = 0; i < frame->stride / 4u; i++) {
+    unsigned words = frame->stride / 4u;
+    for (unsigned i = 0; i < words; i++) {
         frame->sums[i] = frame->sums[2u * i] | frame->sums[2u * i + 1u] << 8;
     }
+    frame->sums[words] = UINT32_MAX;
     frame->groups = tsr_dsp_groups8[groups - 1u];
     frame->least_entry = tsr_dsp_least8[(groups - 1u) / TSR_DSP_LEAST_WORDS];
 }
 
-/* From this pixel on a lane can be chosen. */
-static void reach_lane(struct tsr_dsp_frame *frame, const struct tsr_dsp_row *row, unsigned lane)
+/* At the left border: which column leaves, how many groups take part, where the right rows are. */
+static void change_left(struct tsr_dsp_frame *frame, const struct tsr_dsp_row *row, unsigned lane)
 {
     const struct tsr_match_config *config = row->config;
-    unsigned radius = config->window / 2u;
-    unsigned halfword = (lane & ~3u) | (lane & 1u) << 1 | (lane >> 1 & 1u);
-    frame->sums[halfword / 2u] -= halfword % 2u != 0 ? OUT_OF_REACH << 16 : OUT_OF_REACH;
-    frame->inner = lane - 1u;
+    unsigned radius = row->radius;
+    unsigned x = frame->x;
+    unsigned at_end = config->disparities - 1u - radius; /* the last lane that needs a copy of the right rows' end */
+    unsigned next = lane + TSR_DSP_GROUP_LANES - (lane + 2u * radius) % TSR_DSP_GROUP_LANES;
     frame->groups = tsr_dsp_groups[tsr_dsp_count_groups(config, (int)(lane + radius)) - 1u];
-    if (lane + radius == config->disparities - 1u) { /* no lane beyond the end from here on */
+    if (lane < at_end) {
+        next = next < at_end ? next : at_end;
+    } else if (lane == at_end) {
         frame->right_new = row->right_new + (config->width - config->disparities);
         frame->right_old = row->right_old + (config->width - config->disparities);
     }
-    if (frame->x <= radius + 1u) { /* the column that leaves is column 0 */
+    frame->change = row->start + (next < config->disparities ? next : config->disparities - 1u);
+    if (x <= radius + 1u) { /* the column that leaves is column 0 */
         frame->leave = row->scratch.columns - config->disparities;
-        frame->tex_leave = row->scratch.texture - (frame->x <= radius ? frame->x : radius + 1u);
+        frame->tex_leave = row->scratch.texture - (x <= radius ? x : radius + 1u);
+        frame->change = x + 1u;
     }
     if (lane == config->disparities - 1u && config->mode == TSR_MATCH_SAD8) {
         narrow_sums(frame);
@@ -156,7 +160,7 @@ static void reach_lane(struct tsr_dsp_frame *frame, const struct tsr_dsp_row *ro
 static void take_last_column(struct tsr_dsp_frame *frame, const struct tsr_dsp_row *row)
 {
     unsigned last = row->config->width - 1u;
-    frame->right_new = row->right_new + start_of(row);
+    frame->right_new = row->right_new + row->start;
     frame->right_old = frame->right_new;
     frame->enter = row->scratch.columns + (size_t)(last - 1u) * frame->stride;
     frame->left_new = row->left_new + last - frame->x;
@@ -165,25 +169,38 @@ static void take_last_column(struct tsr_dsp_frame *frame, const struct tsr_dsp_r
 }
 
 /* Not 0 when the row is done. */
-uint32_t tsr_dsp_prepare(struct tsr_dsp_frame *frame)
+static __attribute__((noinline)) uint32_t change(struct tsr_dsp_frame *frame, const struct tsr_dsp_row *row)
 {
-    const struct tsr_dsp_row *row = frame->row;
-    unsigned radius = row->config->window / 2u;
     unsigned width = row->config->width;
-    unsigned lane = frame->x - start_of(row);
+    unsigned lane = frame->x - row->start;
     if (frame->x == width) {
         return 1;
     }
-    frame->stop = frame->x + 1u;
     if (lane < frame->stride) {
-        reach_lane(frame, row, lane);
+        change_left(frame, row, lane);
     }
-    if (frame->x + radius >= width) {
+    if (frame->x + row->radius >= width) {
         take_last_column(frame, row);
+        frame->change = frame->x + 1u;
     } else if (lane + 1u >= frame->stride) {
-        frame->stop = width - radius;
+        frame->stop = width - row->radius;
+        frame->change = frame->stop;
+    } else if (frame->change + row->radius > width) {
+        frame->change = width - row->radius;
     }
     return 0;
+}
+
+uint32_t tsr_dsp_prepare(struct tsr_dsp_frame *frame)
+{
+    const struct tsr_dsp_row *row = frame->row;
+    unsigned lane = frame->x - row->start;
+    frame->stop = frame->x + 1u;
+    if (lane < frame->stride) {
+        uint16_t *sum = (uint16_t *)(void *)frame->sums + ((lane & ~3u) | (lane & 1u) << 1 | (lane >> 1 & 1u));
+        *sum = (uint16_t)(*sum - OUT_OF_REACH);
+    }
+    return frame->x < frame->change ? 0u : change(frame, row);
 }
 
 static void move_texture_columns(const struct tsr_dsp_row *row)
@@ -203,11 +220,28 @@ static void move_texture_columns(const struct tsr_dsp_row *row)
     }
 }
 
+/* And choices, which follow. */
+static void clear_claims(const struct tsr_dsp_row *row)
+{
+    uint32_t *words = (uint32_t *)(void *)row->scratch.claims;
+    unsigned count = row->config->width;
+    for (; count >= 8u; count -= 8u, words += 8) {
+        for (unsigned i = 0; i < 8u; i++) {
+            words[i] = UINT32_MAX;
+        }
+    }
+    for (; count > 0; count--) {
+        *words++ = UINT32_MAX;
+    }
+}
+
 static void match_row(const struct tsr_match *match, unsigned y, unsigned y_new, unsigned y_old)
 {
     const struct tsr_match_config *config = &match->config;
     struct tsr_dsp_row row = {.config = config,
                               .scratch = tsr_match_share_scratch(match),
+                              .radius = config->window / 2u,
+                              .start = (uint32_t)config->search_start_px, /* not negative: match.c */
                               .left_new = match->left.pixels + (size_t)y_new * match->left.stride,
                               .left_old = match->left.pixels + (size_t)y_old * match->left.stride,
                               .right_new = match->right.pixels + (size_t)y_new * match->right.stride,
@@ -216,10 +250,10 @@ static void match_row(const struct tsr_match *match, unsigned y, unsigned y_new,
                               .edge_old = match->scratch + TSR_DSP_EDGE_LEN(config->disparities)};
     tsr_dsp_fill_edge(config, row.right_new, row.edge_new);
     tsr_dsp_fill_edge(config, row.right_old, row.edge_old);
-    memset(row.scratch.claims, 0xff, 2u * sizeof *row.scratch.claims * config->width); /* and choices, which follow */
+    clear_claims(&row);
     move_texture_columns(&row);
     tsr_dsp_match_pixels(&row);
-    tsr_match_write_row(match, y);
+    tsr_dsp_write_row(match, y);
 }
 
 const struct tsr_match_kernel tsr_match_kernel_dsp = {"dsp", tsr_dsp_prefilter_row, tsr_dsp_add_row, match_row};

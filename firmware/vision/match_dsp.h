@@ -52,6 +52,8 @@ struct tsr_dsp_row {
     const uint8_t *right_old;
     uint8_t *edge_new;
     uint8_t *edge_old;
+    uint32_t start; /* s */
+    uint32_t radius;
 };
 
 /*
@@ -82,36 +84,38 @@ struct tsr_dsp_frame {
     const uint8_t *tex_leave;
     uint32_t unique_scale; /* limit + 1 of eq. (15) is (sum * scale + one) >> 20 */
     uint32_t unique_one;
+    uint32_t stop; /* the pixel that needs tsr_dsp_prepare() */
     const void *least_entry; /* where the least sums of all groups are judged */
-    uint16_t *choices;
-    uint32_t inner; /* d is between what can be searched if d - 1 < inner: eq. (16) */
-    uint32_t stop;  /* the pixel that needs tsr_dsp_prepare() */
+    uint16_t *choices;       /* [x], 32 d + offset_q4, or TSR_MATCH_CHOICE_NONE */
+    uint32_t lane_key;       /* see FIND_WINNER in match_dsp_window8.c */
+    uint32_t ones_again;
+    uint32_t change; /* the pixel from which more changes than that a lane can be chosen */
     const struct tsr_dsp_row *row;
-    uint32_t sums[TSR_DSP_GROUPS_MAX * TSR_DSP_GROUP_LANES / 2u];
+    uint32_t sums[TSR_DSP_GROUPS_MAX * TSR_DSP_GROUP_LANES / 2u + 1u]; /* the last one's neighbour is out of reach */
     uint32_t least[TSR_DSP_GROUPS_MAX]; /* of every group, two halves or four bytes */
-    uint32_t align;                     /* with nine registers pushed, a multiple of 8 bytes */
+    uint32_t align[2];                  /* with nine registers pushed, a multiple of 8 bytes */
 };
 
 /* The assembly's offsets. */
 #define TSR_DSP_AT_X 24
-#define TSR_DSP_AT_ONES 32
 #define TSR_DSP_AT_STRIDE 36
 #define TSR_DSP_AT_CLAIMS 52
-#define TSR_DSP_AT_CHOICES 76
-#define TSR_DSP_AT_STOP 84
-#define TSR_DSP_AT_SUMS 92
-#define TSR_DSP_AT_LEAST 348
-#define TSR_DSP_FRAME_LEN 416
+#define TSR_DSP_AT_LEAST_ENTRY 76
+#define TSR_DSP_AT_CHOICES 80
+#define TSR_DSP_AT_KEY 84
+#define TSR_DSP_AT_SUMS 100
+#define TSR_DSP_AT_LEAST 360
+#define TSR_DSP_FRAME_LEN 432
 #define TSR_DSP_TEXT_OF(number) #number
 #define TSR_DSP_TEXT(number) TSR_DSP_TEXT_OF(number)
-#define TSR_DSP_EQUATES                                                                                                \
-    ".equ at_x, " TSR_DSP_TEXT(TSR_DSP_AT_X) "\n\t"                                                                    \
-    ".equ at_ones, " TSR_DSP_TEXT(TSR_DSP_AT_ONES) "\n\t"                                                              \
-    ".equ at_stride, " TSR_DSP_TEXT(TSR_DSP_AT_STRIDE) "\n\t"                                                          \
-    ".equ at_claims, " TSR_DSP_TEXT(TSR_DSP_AT_CLAIMS) "\n\t"                                                          \
-    ".equ at_choices, " TSR_DSP_TEXT(TSR_DSP_AT_CHOICES) "\n\t"                                                        \
-    ".equ at_stop, " TSR_DSP_TEXT(TSR_DSP_AT_STOP) "\n\t"                                                              \
-    ".equ at_sums, " TSR_DSP_TEXT(TSR_DSP_AT_SUMS) "\n\t"                                                              \
+#define TSR_DSP_EQUATES \
+    ".equ at_x, " TSR_DSP_TEXT(TSR_DSP_AT_X) "\n\t" \
+    ".equ at_stride, " TSR_DSP_TEXT(TSR_DSP_AT_STRIDE) "\n\t" \
+    ".equ at_claims, " TSR_DSP_TEXT(TSR_DSP_AT_CLAIMS) "\n\t" \
+    ".equ at_least_entry, " TSR_DSP_TEXT(TSR_DSP_AT_LEAST_ENTRY) "\n\t" \
+    ".equ at_choices, " TSR_DSP_TEXT(TSR_DSP_AT_CHOICES) "\n\t" \
+    ".equ at_key, " TSR_DSP_TEXT(TSR_DSP_AT_KEY) "\n\t" \
+    ".equ at_sums, " TSR_DSP_TEXT(TSR_DSP_AT_SUMS) "\n\t" \
     ".equ at_least, " TSR_DSP_TEXT(TSR_DSP_AT_LEAST) "\n\t"
 
 /* Matches the pixels of a row, from the one tsr_dsp_begin() chooses on. */
@@ -142,6 +146,9 @@ static inline unsigned tsr_dsp_count_groups(const struct tsr_match_config *confi
     unsigned groups = (unsigned)(column + config->window / 2) / TSR_DSP_GROUP_LANES + 1u;
     return groups < all ? groups : all;
 }
+
+/* Row y of the map: the choices that agree with the claims, eq. (17). */
+void tsr_dsp_write_row(const struct tsr_match *match, unsigned y);
 
 void tsr_dsp_prefilter_row(const struct tsr_match *match, unsigned y);
 void tsr_dsp_add_row(const struct tsr_match *match, unsigned y, unsigned times);

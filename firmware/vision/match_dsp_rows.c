@@ -145,4 +145,33 @@ void tsr_dsp_add_row(const struct tsr_match *match, unsigned y, unsigned times)
         scratch.texture[x] = (uint8_t)(scratch.texture[x] + times * difference);
     }
 }
+
+/* The claim of the right pixel at claims - 2 d is |d_right - d| away by USAD8. */
+static inline unsigned find_distance(unsigned claim, unsigned d)
+{
+    unsigned distance;
+    __asm("usad8 %0, %1, %2" : "=r"(distance) : "r"(TSR_MATCH_CLAIM_D(claim)), "r"(d));
+    return distance;
+}
+
+void tsr_dsp_write_row(const struct tsr_match *match, unsigned y)
+{
+    struct tsr_match_scratch scratch = tsr_match_share_scratch(match);
+    const uint16_t *choice = scratch.choices;
+    const uint16_t *end = choice + match->config.width;
+    const uint16_t *claim = scratch.claims - match->config.search_start_px;
+    unsigned tolerance = match->config.lr_tolerance_px;
+    uint16_t *value = match->map + (size_t)y * match->config.width;
+    for (; choice < end; choice++, claim++, value++) {
+        unsigned found = *choice;
+        unsigned result = TSR_DISPARITY_INVALID;
+        if (found != TSR_MATCH_CHOICE_NONE) {
+            unsigned d = (found + 16u) >> 5;
+            if (find_distance(*(claim - d), d) <= tolerance) {
+                result = found - 16u * d;
+            }
+        }
+        *value = (uint16_t)result;
+    }
+}
 #endif

@@ -32,12 +32,13 @@
 #define IN_FRAME(member, offset) _Static_assert(offsetof(struct tsr_dsp_frame, member) == (offset), #member)
 IN_FRAME(x, TSR_DSP_AT_X);
 IN_FRAME(texture, TSR_DSP_AT_X + 4);
-IN_FRAME(ones, TSR_DSP_AT_ONES);
 IN_FRAME(stride, TSR_DSP_AT_STRIDE);
 IN_FRAME(claims, TSR_DSP_AT_CLAIMS);
+IN_FRAME(stop, TSR_DSP_AT_CLAIMS + 20);
+IN_FRAME(least_entry, TSR_DSP_AT_LEAST_ENTRY);
 IN_FRAME(choices, TSR_DSP_AT_CHOICES);
-IN_FRAME(inner, TSR_DSP_AT_CHOICES + 4);
-IN_FRAME(stop, TSR_DSP_AT_STOP);
+IN_FRAME(lane_key, TSR_DSP_AT_KEY);
+IN_FRAME(ones_again, TSR_DSP_AT_KEY + 4);
 IN_FRAME(sums, TSR_DSP_AT_SUMS);
 IN_FRAME(least, TSR_DSP_AT_LEAST);
 _Static_assert(sizeof(struct tsr_dsp_frame) == TSR_DSP_FRAME_LEN, "the frame's length");
@@ -126,12 +127,6 @@ _Static_assert(sizeof(struct tsr_dsp_frame) == TSR_DSP_FRAME_LEN, "the frame's l
     "ldrh r1, [r5, #at_sums+\\below]\n\t"                                                                              \
     "ldrh r2, [r5, #at_sums+\\above]\n\t"                                                                              \
     ".endm\n\t"                                                                                                        \
-    ".Llane0: judge_words 0, 1, 2, 3\n\t"                                                                              \
-    "orr r0, r0, r1\n\t"                                                                                               \
-    "orr r2, r2, r3\n\t"                                                                                               \
-    "orrs r0, r2, r0, lsr #16\n\t"                                                                                     \
-    "end_lane -2, 4\n\t"                                                                                               \
-    "b .Linterpolate\n\t"                                                                                              \
     ".Llane1: judge_words 1, 2, 3\n\t"                                                                                 \
     "orr r2, r2, r3\n\t"                                                                                               \
     "orrs r0, r2, r1, lsr #16\n\t"                                                                                     \
@@ -168,7 +163,15 @@ _Static_assert(sizeof(struct tsr_dsp_frame) == TSR_DSP_FRAME_LEN, "the frame's l
     "orr r2, r2, r3\n\t"                                                                                               \
     "orr r0, r0, r1\n\t"                                                                                               \
     "orrs r0, r0, r2, lsl #16\n\t"                                                                                     \
-    "end_lane 10, 16\n\t"
+    "end_lane 10, 16\n\t"                                                                                              \
+    "b .Linterpolate\n\t"                                                                                                \
+    ".Llane0: judge_words 0, 1, 2, 3\n\t"                                                                              \
+    "orr r0, r0, r1\n\t"                                                                                               \
+    "orr r2, r2, r3\n\t"                                                                                               \
+    "orrs r0, r2, r0, lsr #16\n\t"                                                                                     \
+    "end_lane -2, 4\n\t"                                                                                               \
+    "cmp r9, #0\n\t"                                                                                                   \
+    "beq .Lfirst\n\t"
 
 /* Another group has a sum within the limit. It may be the lane beside the winner's: is it the only one? */
 #define JUDGE_NEIGHBOURS                                                                                               \
@@ -231,12 +234,9 @@ __attribute__((naked)) void tsr_dsp_match_pixels(const struct tsr_dsp_row *row)
         "stmia sp, {r0-r3}\n\t"
         FIND_WINNER
         TSR_DSP_CLAIM
-        "blt.w .Lnext\n\t"
         "lsr r7, r7, #20\n\t"
         "orr r7, r7, r7, lsl #16\n\t"
-        "add r0, sp, #at_least\n\t"
-        "str r7, [r0, r4, lsl #2]\n\t"
-        "bx lr\n\t"
+        TSR_DSP_JUDGE_LEAST
         ".Lleast_4: judge_least\n\t"
         ".Lleast_3: judge_least\n\t"
         ".Lleast_2: judge_least\n\t"
@@ -253,7 +253,7 @@ __attribute__((naked)) void tsr_dsp_match_pixels(const struct tsr_dsp_row *row)
         "blo tsr_dsp_next_column\n\t"
         "add sp, sp, #" TSR_DSP_TEXT(TSR_DSP_FRAME_LEN) "\n\t"
         "pop {r4-r11, pc}\n\t"
-        TSR_DSP_OFF_CENTRE
+        TSR_DSP_OFF_CENTRE("0x4000")
         JUDGE_NEIGHBOURS
         ".pushsection .rodata.tsr_dsp_groups, \"a\"\n\t"
         ".align 2\n\t"

@@ -50,8 +50,8 @@
     "usub8 r5, r5, r7\n\t"                                                                                             \
     ".endm\n\t"
 
-/* x and texture, the claim of eq. (17), the limit of eq. (15) as a number with 20 fraction bits in r7, and the flags
- * of the texture: LT if there is too little. */
+/* x and texture, which is negative if there is too little, the claim of eq. (17), the limit of eq. (15) as a number
+ * with 20 fraction bits in r7, and stop in lr. */
 #define TSR_DSP_CLAIM                                                                                                  \
     "ldrd r10, r11, [sp, #at_x]\n\t"                                                                                   \
     "add r0, sp, #at_claims\n\t"                                                                                       \
@@ -67,15 +67,19 @@
     "orr r3, r9, r3, lsl #7\n\t"                                                                                       \
     "cmp r3, r2\n\t"                                                                                                   \
     "it lo\n\t"                                                                                                        \
-    "strhlo r3, [r0, r1, lsl #1]\n\t"                                                                                  \
-    "cmp r11, #0\n\t"
+    "strhlo r3, [r0, r1, lsl #1]\n\t"
+
+/* Judges the groups by their least sums, the own one as if it were above the limit. Too little texture raises the
+ * limit above all sums. */
+#define TSR_DSP_JUDGE_LEAST                                                                                            \
+    "orr r7, r7, r11, asr #31\n\t"                                                                                     \
+    "add r0, sp, #at_least\n\t"                                                                                        \
+    "str r7, [r0, r4, lsl #2]\n\t"                                                                                     \
+    "ldr.w pc, [sp, #at_least_entry]\n\t"
 
 /* Eq. (16) from the sums below (r1) and above (r2); the sum below is the larger one here. */
 #define TSR_DSP_INTERPOLATE                                                                                            \
-    "ldrd r3, r4, [sp, #at_choices]\n\t"                                                                               \
-    "sub r0, r9, #1\n\t"                                                                                               \
-    "cmp r0, r4\n\t"                                                                                                   \
-    "bhs .Lcentre\n\t"                                                                                                 \
+    "ldr r3, [sp, #at_choices]\n\t"                                                                                    \
     "subs r0, r1, r2\n\t"                                                                                              \
     "blo .Labove\n\t"                                                                                                  \
     "sub r1, r1, r6\n\t"                                                                                               \
@@ -83,31 +87,31 @@
     "lsl r1, r1, #1\n\t"                                                                                               \
     "udiv r0, r0, r1\n\t"                                                                                              \
     "add r9, r0, r9, lsl #5\n\t"                                                                                       \
-    "add r9, r9, #8\n\t"                                                                                               \
     "strh r9, [r3, r10, lsl #1]\n\t"
 
-/* The other cases of it. */
-#define TSR_DSP_OFF_CENTRE                                                                                             \
+/* The other cases of it: d = 0, the sum above is the larger one, it is out of reach. */
+#define TSR_DSP_OFF_CENTRE(out_of_reach)                                                                               \
+    ".Lfirst:\n\t"                                                                                                     \
+    "ldr r3, [sp, #at_choices]\n\t"                                                                                    \
+    ".Lcentre:\n\t"                                                                                                    \
+    "lsl r9, r9, #5\n\t"                                                                                               \
+    "strh r9, [r3, r10, lsl #1]\n\t"                                                                                   \
+    "b .Lnext\n\t"                                                                                                     \
     ".Labove:\n\t"                                                                                                     \
+    "cmp r2, #" out_of_reach "\n\t"                                                                                    \
+    "bhs .Lcentre\n\t"                                                                                                 \
     "sub r1, r2, r6\n\t"                                                                                               \
     "sub r0, r1, r0, lsl #4\n\t"                                                                                       \
     "lsl r1, r1, #1\n\t"                                                                                               \
     "udiv r0, r0, r1\n\t"                                                                                              \
     "rsb r9, r0, r9, lsl #5\n\t"                                                                                       \
-    "add r9, r9, #8\n\t"                                                                                               \
-    "strh r9, [r3, r10, lsl #1]\n\t"                                                                                   \
-    "b .Lnext\n\t"                                                                                                     \
-    ".Lcentre:\n\t"                                                                                                    \
-    "lsl r9, r9, #5\n\t"                                                                                               \
-    "add r9, r9, #8\n\t"                                                                                               \
     "strh r9, [r3, r10, lsl #1]\n\t"                                                                                   \
     "b .Lnext\n\t"
 
 #define TSR_DSP_NEXT                                                                                                   \
-    "ldr r0, [sp, #at_stop]\n\t"                                                                                       \
     "add r10, r10, #1\n\t"                                                                                             \
     "strd r10, r11, [sp, #at_x]\n\t"                                                                                   \
-    "cmp r10, r0\n\t"                                                                                                  \
+    "cmp r10, lr\n\t"                                                                                                  \
     "blo.w tsr_dsp_next_column\n\t"
 
 /* Goes to .Lnext if a group but the winner's and that of r4, which has been judged, has a sum within the limit. */

@@ -45,7 +45,14 @@
     "bne.w .Lfar\n\t"                                                                                                  \
     ".endm\n\t"
 
-/* As in match_dsp_window.c; r12 becomes 1 in every byte. */
+/*
+ * As in match_dsp_window.c; r12 becomes 1 in every byte.
+ *
+ * Bit 8 l of e is 1 if lane l has the least sum, bit 8 l of f if lane 4 + l has.
+ * The product of 16 e + f and 2^27 + 2^18 + 2^9 + 1 has them at bits 31 - l and
+ * 27 - l, and below each only what it brings along itself, in places of its own:
+ * CLZ counts the lane.
+ */
 #define FIND_WINNER                                                                                                    \
     "uxtb16 r4, lr\n\t" /* the bytes as halves of sum and group */                                                     \
     "uxtb16 r5, r12\n\t"                                                                                               \
@@ -55,34 +62,22 @@
     "orr r5, r5, r6\n\t"                                                                                               \
     "usub16 r6, r4, r5\n\t"                                                                                            \
     "sel r4, r5, r4\n\t"                                                                                               \
-    "lsr r5, r4, #16\n\t"                                                                                              \
-    "uxth r4, r4\n\t"                                                                                                  \
-    "cmp r4, r5\n\t"                                                                                                   \
-    "it hi\n\t"                                                                                                        \
-    "movhi r4, r5\n\t"                                                                                                 \
-    "ldr r12, [sp, #at_ones]\n\t"                                                                                      \
-    "lsr r6, r4, #8\n\t"                                                                                               \
+    "ror r5, r4, #16\n\t"                                                                                              \
+    "usub16 r6, r4, r5\n\t"                                                                                            \
+    "sel r4, r5, r4\n\t"                                                                                               \
+    "ldrd r11, r12, [sp, #at_key]\n\t"                                                                                 \
+    "lsr r6, r4, #24\n\t"                                                                                              \
     "uxtb r4, r4\n\t"                                                                                                  \
     "add r5, sp, r4, lsl #3\n\t"                                                                                       \
     "ldrd r0, r1, [r5, #at_sums]\n\t"                                                                                  \
     "add r7, r6, #1\n\t"                                                                                               \
     "mul r7, r7, r12\n\t"                                                                                              \
-    "uqsub8 r0, r7, r0\n\t" /* 1 where the sum is the least */                                                         \
-    "cbz r0, .Lupper\n\t"                                                                                              \
-    "rbit r0, r0\n\t"                                                                                                  \
-    "clz r8, r0\n\t"                                                                                                   \
-    "lsr r8, r8, #3\n\t"                                                                                               \
-    ".Lfound:\n\t"                                                                                                     \
-    "add r9, r8, r4, lsl #3\n\t"
-
-#define FIND_UPPER                                                                                                     \
-    ".Lupper:\n\t"                                                                                                     \
+    "uqsub8 r0, r7, r0\n\t"                                                                                            \
     "uqsub8 r1, r7, r1\n\t"                                                                                            \
-    "rbit r1, r1\n\t"                                                                                                  \
-    "clz r8, r1\n\t"                                                                                                   \
-    "lsr r8, r8, #3\n\t"                                                                                               \
-    "add r8, r8, #4\n\t"                                                                                               \
-    "b .Lfound\n\t"
+    "orr r0, r1, r0, lsl #4\n\t"                                                                                       \
+    "mul r0, r0, r11\n\t"                                                                                              \
+    "clz r8, r0\n\t"                                                                                                   \
+    "add r9, r8, r4, lsl #3\n\t"
 
 /* Goes to .Lnext if a lane of the own group that is not beside the winner's is within the limit; the sums beside it
  * in r1 and r2. */
@@ -95,7 +90,10 @@
     ".byte (.Llane0-.Llanes)/2, (.Llane1-.Llanes)/2, (.Llane2-.Llanes)/2, (.Llane3-.Llanes)/2\n\t"                     \
     ".byte (.Llane4-.Llanes)/2, (.Llane5-.Llanes)/2, (.Llane6-.Llanes)/2, (.Llane7-.Llanes)/2\n\t"                     \
     ".Llane0: orrs r0, r1, r0, lsr #16\n\t"                                                                            \
-    "b .Llane\n\t"                                                                                                     \
+    "bne .Lnext\n\t"                                                                                                   \
+    "cmp r9, #0\n\t"                                                                                                   \
+    "beq .Lfirst\n\t"                                                                                                  \
+    "b .Lbeside\n\t"                                                                                                   \
     ".Llane1: orrs r0, r1, r0, lsr #24\n\t"                                                                            \
     "b .Llane\n\t"                                                                                                     \
     ".Llane2: orrs r0, r1, r0, lsl #24\n\t"                                                                            \
@@ -113,6 +111,7 @@
     ".Llane7: orrs r0, r0, r1, lsl #16\n\t"                                                                            \
     ".Llane:\n\t"                                                                                                      \
     "bne .Lnext\n\t"                                                                                                   \
+    ".Lbeside:\n\t"                                                                                                    \
     "add r5, r5, r8\n\t"                                                                                               \
     "ldrb r1, [r5, #at_sums-1]\n\t"                                                                                    \
     "ldrb r2, [r5, #at_sums+1]\n\t"
@@ -156,12 +155,9 @@ __attribute__((naked, used)) void tsr_dsp_match_pixels8(void)
         "stmia sp, {r0-r3}\n\t"
         FIND_WINNER
         TSR_DSP_CLAIM
-        "blt.w .Lnext\n\t"
         "usat r7, #8, r7, asr #20\n\t"
         "mul r7, r7, r12\n\t"
-        "add r0, sp, #at_least\n\t"
-        "str r7, [r0, r4, lsl #2]\n\t"
-        "bx lr\n\t" FIND_UPPER
+        TSR_DSP_JUDGE_LEAST
         ".Lleast_4: judge_least\n\t"
         ".Lleast_3: judge_least\n\t"
         ".Lleast_2: judge_least\n\t"
@@ -169,7 +165,7 @@ __attribute__((naked, used)) void tsr_dsp_match_pixels8(void)
         ".Lown:\n\t" JUDGE_OWN TSR_DSP_INTERPOLATE
         ".Lnext:\n\t" TSR_DSP_NEXT
         "b.w tsr_dsp_end_column\n\t"
-        TSR_DSP_OFF_CENTRE
+        TSR_DSP_OFF_CENTRE("0xff")
         JUDGE_NEIGHBOURS
         ".pushsection .rodata.tsr_dsp_groups8, \"a\"\n\t"
         ".align 2\n\t"
