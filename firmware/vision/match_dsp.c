@@ -203,20 +203,34 @@ uint32_t tsr_dsp_prepare(struct tsr_dsp_frame *frame)
     return frame->x < frame->change ? 0u : change(frame, row);
 }
 
+/* As the columns in match_dsp_window.c, with caps in place of the left pixels. */
+static inline uint32_t move_texture(uint32_t sums, uint32_t added, uint32_t taken, uint32_t caps)
+{
+    uint32_t t;
+    __asm("uqadd8 %1, %2, %4\n\t"
+          "umaal %0, %2, %1, %6\n\t"
+          "uqsub8 %1, %3, %5\n\t"
+          "umaal %0, %3, %1, %6"
+          : "+&r"(sums), "=&r"(t), "+&r"(added), "+&r"(taken)
+          : "r"(~caps), "r"(caps), "r"(-2));
+    return sums - 2u * caps - 2u;
+}
+
 static void move_texture_columns(const struct tsr_dsp_row *row)
 {
     unsigned width = row->config->width;
     uint8_t *columns = row->scratch.texture;
-    uint32_t caps = row->config->prefilter_cap * 0x01010101u;
+    const uint8_t *left_new = row->left_new;
+    const uint8_t *left_old = row->left_old;
+    uint32_t cap = row->config->prefilter_cap;
+    uint32_t caps = cap * 0x01010101u;
     unsigned x = 0;
     for (; x + 4u <= width; x += 4u) {
-        uint32_t added = tsr_dsp_difference(tsr_dsp_load(row->left_new + x), caps);
-        uint32_t taken = tsr_dsp_difference(tsr_dsp_load(row->left_old + x), caps);
-        tsr_dsp_store(columns + x, tsr_dsp_load(columns + x) + added - taken);
+        uint32_t sums = tsr_dsp_load(columns + x);
+        tsr_dsp_store(columns + x, move_texture(sums, tsr_dsp_load(left_new + x), tsr_dsp_load(left_old + x), caps));
     }
     for (; x < width; x++) {
-        uint32_t added = tsr_dsp_difference(row->left_new[x], caps & 0xffu);
-        columns[x] = (uint8_t)(columns[x] + added - tsr_dsp_difference(row->left_old[x], caps & 0xffu));
+        columns[x] = (uint8_t)(columns[x] + tsr_dsp_difference(left_new[x], cap) - tsr_dsp_difference(left_old[x], cap));
     }
 }
 
