@@ -62,7 +62,8 @@ static void begin_sums(struct tsr_dsp_frame *frame, const struct tsr_dsp_row *ro
     const struct tsr_match_config *config = row->config;
     int start = config->search_start_px;
     int radius = config->window / 2;
-    for (unsigned i = 0; i <= config->disparities / 2u; i++) {
+    unsigned words = config->disparities / 2u;
+    for (unsigned i = 0; i <= words; i++) { /* and a neighbour of the last */
         frame->sums[i] = OUT_OF_REACH * 0x10001u;
     }
     for (int x = start > radius ? start - radius : 0; x < start + radius; x++) {
@@ -203,34 +204,35 @@ uint32_t tsr_dsp_prepare(struct tsr_dsp_frame *frame)
     return frame->x < frame->change ? 0u : change(frame, row);
 }
 
-/* As the columns in match_dsp_window.c, with caps in place of the left pixels. */
-static inline uint32_t move_texture(uint32_t sums, uint32_t added, uint32_t taken, uint32_t caps)
-{
-    uint32_t t;
-    __asm("uqadd8 %1, %2, %4\n\t"
-          "umaal %0, %2, %1, %6\n\t"
-          "uqsub8 %1, %3, %5\n\t"
-          "umaal %0, %3, %1, %6"
-          : "+&r"(sums), "=&r"(t), "+&r"(added), "+&r"(taken)
-          : "r"(~caps), "r"(caps), "r"(-2));
-    return sums - 2u * caps - 2u;
-}
-
+/* As the columns in match_dsp_window.c, with the cap in place of the left pixels. */
 static void move_texture_columns(const struct tsr_dsp_row *row)
 {
-    unsigned width = row->config->width;
     uint8_t *columns = row->scratch.texture;
     const uint8_t *left_new = row->left_new;
     const uint8_t *left_old = row->left_old;
+    const uint8_t *end = left_new + row->config->width;
     uint32_t cap = row->config->prefilter_cap;
     uint32_t caps = cap * 0x01010101u;
-    unsigned x = 0;
-    for (; x + 4u <= width; x += 4u) {
-        uint32_t sums = tsr_dsp_load(columns + x);
-        tsr_dsp_store(columns + x, move_texture(sums, tsr_dsp_load(left_new + x), tsr_dsp_load(left_old + x), caps));
-    }
-    for (; x < width; x++) {
-        columns[x] = (uint8_t)(columns[x] + tsr_dsp_difference(left_new[x], cap) - tsr_dsp_difference(left_old[x], cap));
+    uint32_t sums, pixels, t;
+    __asm volatile("1:\n\t"
+                   "ldr %[sums], [%[columns]]\n\t"
+                   "ldr %[pixels], [%[left_new]], #4\n\t"
+                   "uqadd8 %[t], %[pixels], %[not_caps]\n\t"
+                   "umaal %[sums], %[pixels], %[t], %[minus_two]\n\t"
+                   "ldr %[pixels], [%[left_old]], #4\n\t"
+                   "uqsub8 %[t], %[pixels], %[caps]\n\t"
+                   "umaal %[sums], %[pixels], %[t], %[minus_two]\n\t"
+                   "add %[sums], %[sums], %[common]\n\t"
+                   "str %[sums], [%[columns]], #4\n\t"
+                   "cmp %[left_new], %[last]\n\t"
+                   "bls 1b"
+                   : [columns] "+&r"(columns), [left_new] "+&r"(left_new), [left_old] "+&r"(left_old),
+                     [sums] "=&r"(sums), [pixels] "=&r"(pixels), [t] "=&r"(t)
+                   : [caps] "r"(caps), [not_caps] "r"(~caps), [minus_two] "r"(-2), [common] "r"(-2u * caps - 2u),
+                     [last] "r"(end - 4)
+                   : "cc", "memory");
+    for (; left_new < end; left_new++, left_old++, columns++) {
+        *columns = (uint8_t)(*columns + tsr_dsp_difference(*left_new, cap) - tsr_dsp_difference(*left_old, cap));
     }
 }
 

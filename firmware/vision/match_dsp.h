@@ -72,21 +72,21 @@ struct tsr_dsp_frame {
     const uint8_t *leave;
     const uint8_t *left_new; /* [x] */
     const uint8_t *left_old;
+    uint32_t ones;      /* 1 in every byte */
+    const void *groups; /* where the first group is worked on */
+    uint32_t stride;    /* D, from column to column */
+    int32_t minus_two;  /* see match_dsp_window.c */
+    uint32_t none;      /* above all sums */
     uint32_t x;
-    int32_t texture;   /* less what it must be at least: eq. (13) */
-    uint32_t ones;     /* 1 in every byte */
-    uint32_t stride;   /* D, from column to column */
-    int32_t minus_two; /* see move_quad in match_dsp_window.c */
-    uint32_t none;     /* above all sums */
-    const void *groups;       /* where the first group is worked on */
+    int32_t texture;          /* less what it must be at least: eq. (13) */
     uint16_t *claims;         /* [x - d] */
     const uint8_t *tex_enter; /* [x] */
     const uint8_t *tex_leave;
     uint32_t unique_scale; /* limit + 1 of eq. (15) is (sum * scale + one) >> 20 */
     uint32_t unique_one;
-    uint32_t stop; /* the pixel that needs tsr_dsp_prepare() */
+    uint16_t *choices; /* [x], 32 d + offset_q4, or TSR_MATCH_CHOICE_NONE */
+    uint32_t stop;     /* the pixel that needs tsr_dsp_prepare() */
     const void *least_entry; /* where the least sums of all groups are judged */
-    uint16_t *choices;       /* [x], 32 d + offset_q4, or TSR_MATCH_CHOICE_NONE */
     uint32_t lane_key;       /* see FIND_WINNER in match_dsp_window8.c */
     uint32_t ones_again;
     uint32_t change; /* the pixel from which more changes than that a lane can be chosen */
@@ -97,11 +97,9 @@ struct tsr_dsp_frame {
 };
 
 /* The assembly's offsets. */
-#define TSR_DSP_AT_X 24
-#define TSR_DSP_AT_STRIDE 36
-#define TSR_DSP_AT_CLAIMS 52
-#define TSR_DSP_AT_LEAST_ENTRY 76
-#define TSR_DSP_AT_CHOICES 80
+#define TSR_DSP_AT_X 44
+#define TSR_DSP_AT_STRIDE 32
+#define TSR_DSP_AT_LEAST_ENTRY 80
 #define TSR_DSP_AT_KEY 84
 #define TSR_DSP_AT_SUMS 100
 #define TSR_DSP_AT_LEAST 360
@@ -111,9 +109,7 @@ struct tsr_dsp_frame {
 #define TSR_DSP_EQUATES \
     ".equ at_x, " TSR_DSP_TEXT(TSR_DSP_AT_X) "\n\t" \
     ".equ at_stride, " TSR_DSP_TEXT(TSR_DSP_AT_STRIDE) "\n\t" \
-    ".equ at_claims, " TSR_DSP_TEXT(TSR_DSP_AT_CLAIMS) "\n\t" \
     ".equ at_least_entry, " TSR_DSP_TEXT(TSR_DSP_AT_LEAST_ENTRY) "\n\t" \
-    ".equ at_choices, " TSR_DSP_TEXT(TSR_DSP_AT_CHOICES) "\n\t" \
     ".equ at_key, " TSR_DSP_TEXT(TSR_DSP_AT_KEY) "\n\t" \
     ".equ at_sums, " TSR_DSP_TEXT(TSR_DSP_AT_SUMS) "\n\t" \
     ".equ at_least, " TSR_DSP_TEXT(TSR_DSP_AT_LEAST) "\n\t"

@@ -166,6 +166,23 @@ void tsr_dsp_add_row(const struct tsr_match *match, unsigned y, unsigned times)
     }
 }
 
+#define WRITE_PIXEL                                                                                                    \
+    "ldrh %[found], [%[choice]], #2\n\t"                                                                               \
+    "cmp %[found], %[none]\n\t"                                                                                        \
+    "beq 2f\n\t"                                                                                                       \
+    "add %[d], %[found], #16\n\t"                                                                                      \
+    "lsr %[d], %[d], #5\n\t"                                                                                           \
+    "sub %[at], %[choice], %[d], lsl #1\n\t"                                                                           \
+    "ldrh %[at], [%[at], %[to_claim]]\n\t"                                                                             \
+    "sub %[found], %[found], %[d], lsl #4\n\t"                                                                         \
+    "and %[at], %[at], #127\n\t"                                                                                       \
+    "usad8 %[at], %[at], %[d]\n\t"                                                                                     \
+    "cmp %[at], %[tolerance]\n\t"                                                                                      \
+    "it hi\n\t"                                                                                                        \
+    "movhi %[found], %[none]\n\t"                                                                                      \
+    "2:\n\t"                                                                                                           \
+    "strh %[found], [%[value]], #2\n\t"
+
 /* The choices are 32 d + offset_q4, and the claims lie in front of them. */
 void tsr_dsp_write_row(const struct tsr_match *match, unsigned y)
 {
@@ -175,24 +192,10 @@ void tsr_dsp_write_row(const struct tsr_match *match, unsigned y)
     uint16_t *value = match->map + (size_t)y * match->config.width;
     int to_claim = -2 * ((int)match->config.width + match->config.search_start_px + 1);
     uint32_t found, d, at;
-    __asm volatile("1:\n\t"
-                   "ldrh %[found], [%[choice]], #2\n\t"
-                   "cmp %[found], %[none]\n\t"
-                   "beq 2f\n\t"
-                   "add %[d], %[found], #16\n\t"
-                   "lsr %[d], %[d], #5\n\t"
-                   "sub %[at], %[choice], %[d], lsl #1\n\t"
-                   "ldrh %[at], [%[at], %[to_claim]]\n\t"
-                   "sub %[found], %[found], %[d], lsl #4\n\t"
-                   "and %[at], %[at], #127\n\t"
-                   "usad8 %[at], %[at], %[d]\n\t"
-                   "cmp %[at], %[tolerance]\n\t"
-                   "it hi\n\t"
-                   "movhi %[found], %[none]\n\t"
-                   "2:\n\t"
-                   "strh %[found], [%[value]], #2\n\t"
-                   "cmp %[choice], %[end]\n\t"
-                   "blo 1b\n\t"
+    __asm volatile("1:\n\t" WRITE_PIXEL "cmp %[choice], %[end]\n\t"
+                   "beq 3f\n\t" WRITE_PIXEL "cmp %[choice], %[end]\n\t"
+                   "bne 1b\n\t"
+                   "3:"
                    : [choice] "+&r"(choice), [value] "+&r"(value), [found] "=&r"(found), [d] "=&r"(d), [at] "=&r"(at)
                    : [end] "r"(end), [none] "r"(TSR_MATCH_CHOICE_NONE), [to_claim] "r"(to_claim),
                      [tolerance] "r"(match->config.lr_tolerance_px)

@@ -30,13 +30,10 @@
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 
 #define IN_FRAME(member, offset) _Static_assert(offsetof(struct tsr_dsp_frame, member) == (offset), #member)
-IN_FRAME(x, TSR_DSP_AT_X);
-IN_FRAME(texture, TSR_DSP_AT_X + 4);
 IN_FRAME(stride, TSR_DSP_AT_STRIDE);
-IN_FRAME(claims, TSR_DSP_AT_CLAIMS);
-IN_FRAME(stop, TSR_DSP_AT_CLAIMS + 20);
+IN_FRAME(x, TSR_DSP_AT_X);
+IN_FRAME(stop, TSR_DSP_AT_X + 32);
 IN_FRAME(least_entry, TSR_DSP_AT_LEAST_ENTRY);
-IN_FRAME(choices, TSR_DSP_AT_CHOICES);
 IN_FRAME(lane_key, TSR_DSP_AT_KEY);
 IN_FRAME(ones_again, TSR_DSP_AT_KEY + 4);
 IN_FRAME(sums, TSR_DSP_AT_SUMS);
@@ -68,17 +65,17 @@ _Static_assert(sizeof(struct tsr_dsp_frame) == TSR_DSP_FRAME_LEN, "the frame's l
     "sel lr, r5, lr\n\t"                                                                                               \
     ".endm\n\t"
 
-/* Four least words at r0; r7 is above the limit. */
+/* Four least words at r11; r7 is above the limit. */
 #define JUDGE_LEAST                                                                                                    \
     ".macro judge_least\n\t"                                                                                           \
-    "ldmia r0!, {r1-r4}\n\t"                                                                                           \
-    "uqsub16 r1, r7, r1\n\t"                                                                                           \
+    "ldmia r11!, {r2-r4, r10}\n\t"                                                                                           \
     "uqsub16 r2, r7, r2\n\t"                                                                                           \
     "uqsub16 r3, r7, r3\n\t"                                                                                           \
     "uqsub16 r4, r7, r4\n\t"                                                                                           \
-    "orr r1, r1, r2\n\t"                                                                                               \
-    "orr r3, r3, r4\n\t"                                                                                               \
-    "orrs r1, r1, r3\n\t"                                                                                              \
+    "uqsub16 r10, r7, r10\n\t"                                                                                           \
+    "orr r2, r2, r3\n\t"                                                                                               \
+    "orr r4, r4, r10\n\t"                                                                                               \
+    "orrs r2, r2, r4\n\t"                                                                                              \
     "bne.w .Lfar\n\t"                                                                                                  \
     ".endm\n\t"
 
@@ -109,10 +106,10 @@ _Static_assert(sizeof(struct tsr_dsp_frame) == TSR_DSP_FRAME_LEN, "the frame's l
     "add r9, r8, r4, lsl #3\n\t"
 
 /* Goes to .Lnext if a lane of the own group that is not beside the winner's is within the limit; the sums beside it
- * in r1 and r2. */
+ * in r2 and r3. */
 #define JUDGE_OWN                                                                                                      \
-    "ldrd r0, r1, [r5, #at_sums]\n\t"                                                                                  \
-    "ldrd r2, r3, [r5, #at_sums+8]\n\t"                                                                                \
+    "ldrd r2, r3, [r5, #at_sums]\n\t"                                                                                  \
+    "ldrd r4, r10, [r5, #at_sums+8]\n\t"                                                                                \
     "tbb [pc, r8]\n\t"                                                                                                 \
     ".Llanes:\n\t"                                                                                                     \
     ".byte (.Llane0-.Llanes)/2, (.Llane1-.Llanes)/2, (.Llane2-.Llanes)/2, (.Llane3-.Llanes)/2\n\t"                     \
@@ -124,83 +121,83 @@ _Static_assert(sizeof(struct tsr_dsp_frame) == TSR_DSP_FRAME_LEN, "the frame's l
     ".endm\n\t"                                                                                                        \
     ".macro end_lane below, above\n\t"                                                                                 \
     "bne.w .Lnext\n\t"                                                                                                 \
-    "ldrh r1, [r5, #at_sums+\\below]\n\t"                                                                              \
-    "ldrh r2, [r5, #at_sums+\\above]\n\t"                                                                              \
+    "ldrh r2, [r5, #at_sums+\\below]\n\t"                                                                              \
+    "ldrh r3, [r5, #at_sums+\\above]\n\t"                                                                              \
     ".endm\n\t"                                                                                                        \
-    ".Llane1: judge_words 1, 2, 3\n\t"                                                                                 \
-    "orr r2, r2, r3\n\t"                                                                                               \
-    "orrs r0, r2, r1, lsr #16\n\t"                                                                                     \
+    ".Llane1: judge_words 3, 4, 10\n\t"                                                                                 \
+    "orr r4, r4, r10\n\t"                                                                                               \
+    "orrs r2, r4, r3, lsr #16\n\t"                                                                                     \
     "end_lane 0, 2\n\t"                                                                                                \
     "b .Linterpolate\n\t"                                                                                              \
-    ".Llane2: judge_words 0, 2, 3\n\t"                                                                                 \
-    "orr r2, r2, r3\n\t"                                                                                               \
-    "orrs r0, r2, r0, lsl #16\n\t"                                                                                     \
+    ".Llane2: judge_words 2, 4, 10\n\t"                                                                                 \
+    "orr r4, r4, r10\n\t"                                                                                               \
+    "orrs r2, r4, r2, lsl #16\n\t"                                                                                     \
     "end_lane 4, 6\n\t"                                                                                                \
     "b .Linterpolate\n\t"                                                                                              \
-    ".Llane3: judge_words 0, 1, 2, 3\n\t"                                                                              \
-    "orr r0, r0, r1\n\t"                                                                                               \
-    "orr r0, r3, r0, lsl #16\n\t"                                                                                      \
-    "orrs r0, r0, r2, lsr #16\n\t"                                                                                     \
+    ".Llane3: judge_words 2, 3, 4, 10\n\t"                                                                              \
+    "orr r2, r2, r3\n\t"                                                                                               \
+    "orr r2, r10, r2, lsl #16\n\t"                                                                                      \
+    "orrs r2, r2, r4, lsr #16\n\t"                                                                                     \
     "end_lane 2, 8\n\t"                                                                                                \
     "b .Linterpolate\n\t"                                                                                              \
-    ".Llane4: judge_words 0, 1, 2, 3\n\t"                                                                              \
-    "orr r2, r2, r3\n\t"                                                                                               \
-    "orr r0, r0, r1, lsl #16\n\t"                                                                                      \
-    "orrs r0, r0, r2, lsr #16\n\t"                                                                                     \
+    ".Llane4: judge_words 2, 3, 4, 10\n\t"                                                                              \
+    "orr r4, r4, r10\n\t"                                                                                               \
+    "orr r2, r2, r3, lsl #16\n\t"                                                                                      \
+    "orrs r2, r2, r4, lsr #16\n\t"                                                                                     \
     "end_lane 6, 12\n\t"                                                                                               \
     "b .Linterpolate\n\t"                                                                                              \
-    ".Llane5: judge_words 0, 1, 3\n\t"                                                                                 \
-    "orr r0, r0, r1\n\t"                                                                                               \
-    "orrs r0, r0, r3, lsr #16\n\t"                                                                                     \
+    ".Llane5: judge_words 2, 3, 10\n\t"                                                                                 \
+    "orr r2, r2, r3\n\t"                                                                                               \
+    "orrs r2, r2, r10, lsr #16\n\t"                                                                                     \
     "end_lane 8, 10\n\t"                                                                                               \
     "b .Linterpolate\n\t"                                                                                              \
-    ".Llane6: judge_words 0, 1, 2\n\t"                                                                                 \
-    "orr r0, r0, r1\n\t"                                                                                               \
-    "orrs r0, r0, r2, lsl #16\n\t"                                                                                     \
+    ".Llane6: judge_words 2, 3, 4\n\t"                                                                                 \
+    "orr r2, r2, r3\n\t"                                                                                               \
+    "orrs r2, r2, r4, lsl #16\n\t"                                                                                     \
     "end_lane 12, 14\n\t"                                                                                              \
     "b .Linterpolate\n\t"                                                                                              \
-    ".Llane7: judge_words 0, 1, 2, 3\n\t"                                                                              \
+    ".Llane7: judge_words 2, 3, 4, 10\n\t"                                                                              \
+    "orr r4, r4, r10\n\t"                                                                                               \
     "orr r2, r2, r3\n\t"                                                                                               \
-    "orr r0, r0, r1\n\t"                                                                                               \
-    "orrs r0, r0, r2, lsl #16\n\t"                                                                                     \
+    "orrs r2, r2, r4, lsl #16\n\t"                                                                                     \
     "end_lane 10, 16\n\t"                                                                                              \
     "b .Linterpolate\n\t"                                                                                                \
-    ".Llane0: judge_words 0, 1, 2, 3\n\t"                                                                              \
-    "orr r0, r0, r1\n\t"                                                                                               \
+    ".Llane0: judge_words 2, 3, 4, 10\n\t"                                                                              \
     "orr r2, r2, r3\n\t"                                                                                               \
-    "orrs r0, r2, r0, lsr #16\n\t"                                                                                     \
+    "orr r4, r4, r10\n\t"                                                                                               \
+    "orrs r2, r4, r2, lsr #16\n\t"                                                                                     \
     "end_lane -2, 4\n\t"                                                                                               \
     "cmp r9, #0\n\t"                                                                                                   \
-    "beq .Lfirst\n\t"
+    "beq .Lcentre\n\t"
 
 /* Another group has a sum within the limit. It may be the lane beside the winner's: is it the only one? */
 #define JUDGE_NEIGHBOURS                                                                                               \
     ".Lfar:\n\t"                                                                                                       \
-    "lsr r4, r9, #3\n\t"                                                                                               \
+    "lsr r11, r9, #3\n\t"                                                                                               \
     "cmp r8, #0\n\t"                                                                                                   \
     "beq .Lfar_below\n\t"                                                                                              \
     "cmp r8, #7\n\t"                                                                                                   \
     "bne .Lnext\n\t"                                                                                                   \
-    "ldr r0, [sp, #at_stride]\n\t"                                                                                     \
-    "add r4, r4, #1\n\t"                                                                                               \
-    "cmp r4, r0, lsr #3\n\t"                                                                                           \
+    "ldr r2, [sp, #at_stride]\n\t"                                                                                     \
+    "add r11, r11, #1\n\t"                                                                                               \
+    "cmp r11, r2, lsr #3\n\t"                                                                                           \
     "beq .Lnext\n\t"                                                                                                   \
-    "ldrd r0, r1, [r5, #at_sums+16]\n\t"                                                                               \
-    "ldrd r2, r3, [r5, #at_sums+24]\n\t"                                                                               \
-    "orr r0, r0, #0xff\n\t"                                                                                            \
-    "orr r0, r0, #0xff00\n\t"                                                                                          \
+    "ldrd r2, r3, [r5, #at_sums+16]\n\t"                                                                               \
+    "ldrd r4, r10, [r5, #at_sums+24]\n\t"                                                                               \
+    "orr r2, r2, #0xff\n\t"                                                                                            \
+    "orr r2, r2, #0xff00\n\t"                                                                                          \
     "b .Lfar_judge\n\t"                                                                                                \
     ".Lfar_below:\n\t"                                                                                                 \
-    "subs r4, r4, #1\n\t"                                                                                              \
+    "subs r11, r11, #1\n\t"                                                                                              \
     "blo .Lnext\n\t"                                                                                                   \
-    "ldrd r0, r1, [r5, #at_sums-16]\n\t"                                                                               \
-    "ldrd r2, r3, [r5, #at_sums-8]\n\t"                                                                                \
-    "movt r3, #0xffff\n\t"                                                                                             \
+    "ldrd r2, r3, [r5, #at_sums-16]\n\t"                                                                               \
+    "ldrd r4, r10, [r5, #at_sums-8]\n\t"                                                                                \
+    "movt r10, #0xffff\n\t"                                                                                             \
     ".Lfar_judge:\n\t"                                                                                                 \
-    "judge_words 0, 1, 2, 3\n\t"                                                                                       \
-    "orr r0, r0, r1\n\t"                                                                                               \
+    "judge_words 2, 3, 4, 10\n\t"                                                                                       \
     "orr r2, r2, r3\n\t"                                                                                               \
-    "orrs r0, r0, r2\n\t"                                                                                              \
+    "orr r4, r4, r10\n\t"                                                                                               \
+    "orrs r2, r2, r4\n\t"                                                                                              \
     "bne .Lnext\n\t"                                                                                                   \
     TSR_DSP_JUDGE_ALL_BUT("uqsub16") "b .Lown\n\t"
 
@@ -219,15 +216,15 @@ __attribute__((naked)) void tsr_dsp_match_pixels(const struct tsr_dsp_row *row)
         ".thumb_func\n\t"
         ".globl tsr_dsp_next_column\n\t"
         "tsr_dsp_next_column:\n\t"
-        "ldmia sp, {r0-r9, r11, r12, lr}\n\t"
-        "ldrb r4, [r4, r6]\n\t"
-        "ldrb r5, [r5, r6]\n\t"
-        "add r2, r2, r9\n\t"
-        "add r3, r3, r9\n\t"
-        "mul r9, r5, r8\n\t"
-        "mls r8, r4, r8, r12\n\t"
+        "ldmia sp, {r0-r8, r11, r12, lr}\n\t"
+        "ldrb r4, [r4, lr]\n\t"
+        "ldrb r5, [r5, lr]\n\t"
+        "add r2, r2, r8\n\t"
+        "add r3, r3, r8\n\t"
+        "mul r9, r5, r6\n\t"
+        "mls r8, r4, r6, r12\n\t"
         "sbc r10, r8, r9\n\t"
-        "bx lr\n\t"
+        "bx r7\n\t"
         ".irp group, 15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0\n\t"
         ".Lgroup_\\group: move_group \\group\n\t"
         ".endr\n\t"

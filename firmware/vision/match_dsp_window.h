@@ -3,7 +3,7 @@
  * and what follows when the winner is known. Only its two files include this.
  *
  *   r4 group   r5 its sums, less at_sums   r6 least sum   r7 above the limit in every lane   r8 lane   r9 d
- *   r10 x      r11 texture
+ *   r0 x       r1 texture       r12 choices    lr stop
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -51,79 +51,76 @@
     ".endm\n\t"
 
 /* x and texture, which is negative if there is too little, the claim of eq. (17), the limit of eq. (15) as a number
- * with 20 fraction bits in r7, and stop in lr. */
+ * with 20 fraction bits in r7, choices in r12 and stop in lr. */
 #define TSR_DSP_CLAIM                                                                                                  \
-    "ldrd r10, r11, [sp, #at_x]\n\t"                                                                                   \
-    "add r0, sp, #at_claims\n\t"                                                                                       \
-    "ldmia r0, {r0-r3, r7, lr}\n\t"                                                                                    \
-    "mla r7, r6, r3, r7\n\t"                                                                                           \
-    "ldrb r1, [r1, r10]\n\t"                                                                                           \
-    "ldrb r2, [r2, r10]\n\t"                                                                                           \
-    "add r11, r11, r1\n\t"                                                                                             \
-    "sub r11, r11, r2\n\t"                                                                                             \
-    "sub r1, r10, r9\n\t"                                                                                              \
-    "ldrh r2, [r0, r1, lsl #1]\n\t"                                                                                    \
-    "lsr r3, r6, #2\n\t"                                                                                               \
-    "orr r3, r9, r3, lsl #7\n\t"                                                                                       \
-    "cmp r3, r2\n\t"                                                                                                   \
+    "add r0, sp, #at_x\n\t"                                                                                            \
+    "ldmia r0, {r0-r3, r7, r10-r12, lr}\n\t"                                                                           \
+    "ldrb r3, [r3, r0]\n\t"                                                                                            \
+    "ldrb r7, [r7, r0]\n\t"                                                                                            \
+    "add r1, r1, r3\n\t"                                                                                               \
+    "sub r1, r1, r7\n\t"                                                                                               \
+    "mla r7, r6, r10, r11\n\t"                                                                                         \
+    "sub r3, r0, r9\n\t"                                                                                               \
+    "ldrh r10, [r2, r3, lsl #1]\n\t"                                                                                   \
+    "lsr r11, r6, #2\n\t"                                                                                              \
+    "orr r11, r9, r11, lsl #7\n\t"                                                                                     \
+    "cmp r11, r10\n\t"                                                                                                 \
     "it lo\n\t"                                                                                                        \
-    "strhlo r3, [r0, r1, lsl #1]\n\t"
+    "strhlo r11, [r2, r3, lsl #1]\n\t"
 
 /* Judges the groups by their least sums, the own one as if it were above the limit. Too little texture raises the
  * limit above all sums. */
 #define TSR_DSP_JUDGE_LEAST                                                                                            \
-    "orr r7, r7, r11, asr #31\n\t"                                                                                     \
-    "add r0, sp, #at_least\n\t"                                                                                        \
-    "str r7, [r0, r4, lsl #2]\n\t"                                                                                     \
+    "orr r7, r7, r1, asr #31\n\t"                                                                                      \
+    "add r11, sp, #at_least\n\t"                                                                                       \
+    "str r7, [r11, r4, lsl #2]\n\t"                                                                                    \
     "ldr.w pc, [sp, #at_least_entry]\n\t"
 
-/* Eq. (16) from the sums below (r1) and above (r2); the sum below is the larger one here. */
+/* Eq. (16) from the sums below (r2) and above (r3); the sum below is the larger one here. */
 #define TSR_DSP_INTERPOLATE                                                                                            \
-    "ldr r3, [sp, #at_choices]\n\t"                                                                                    \
-    "subs r0, r1, r2\n\t"                                                                                              \
+    "subs r4, r2, r3\n\t"                                                                                              \
     "blo .Labove\n\t"                                                                                                  \
-    "sub r1, r1, r6\n\t"                                                                                               \
-    "add r0, r1, r0, lsl #4\n\t"                                                                                       \
-    "lsl r1, r1, #1\n\t"                                                                                               \
-    "udiv r0, r0, r1\n\t"                                                                                              \
-    "add r9, r0, r9, lsl #5\n\t"                                                                                       \
-    "strh r9, [r3, r10, lsl #1]\n\t"
+    "sub r2, r2, r6\n\t"                                                                                               \
+    "add r4, r2, r4, lsl #4\n\t"                                                                                       \
+    "lsl r2, r2, #1\n\t"                                                                                               \
+    "udiv r4, r4, r2\n\t"                                                                                              \
+    "add r9, r4, r9, lsl #5\n\t"                                                                                       \
+    "strh r9, [r12, r0, lsl #1]\n\t"
 
 /* The other cases of it: d = 0, the sum above is the larger one, it is out of reach. */
 #define TSR_DSP_OFF_CENTRE(out_of_reach)                                                                               \
-    ".Lfirst:\n\t"                                                                                                     \
-    "ldr r3, [sp, #at_choices]\n\t"                                                                                    \
     ".Lcentre:\n\t"                                                                                                    \
     "lsl r9, r9, #5\n\t"                                                                                               \
-    "strh r9, [r3, r10, lsl #1]\n\t"                                                                                   \
+    "strh r9, [r12, r0, lsl #1]\n\t"                                                                                   \
     "b .Lnext\n\t"                                                                                                     \
     ".Labove:\n\t"                                                                                                     \
-    "cmp r2, #" out_of_reach "\n\t"                                                                                    \
+    "cmp r3, #" out_of_reach "\n\t"                                                                                        \
     "bhs .Lcentre\n\t"                                                                                                 \
-    "sub r1, r2, r6\n\t"                                                                                               \
-    "sub r0, r1, r0, lsl #4\n\t"                                                                                       \
-    "lsl r1, r1, #1\n\t"                                                                                               \
-    "udiv r0, r0, r1\n\t"                                                                                              \
-    "rsb r9, r0, r9, lsl #5\n\t"                                                                                       \
-    "strh r9, [r3, r10, lsl #1]\n\t"                                                                                   \
+    "sub r2, r3, r6\n\t"                                                                                               \
+    "sub r4, r2, r4, lsl #4\n\t"                                                                                       \
+    "lsl r2, r2, #1\n\t"                                                                                               \
+    "udiv r4, r4, r2\n\t"                                                                                              \
+    "rsb r9, r4, r9, lsl #5\n\t"                                                                                       \
+    "strh r9, [r12, r0, lsl #1]\n\t"                                                                                   \
     "b .Lnext\n\t"
 
 #define TSR_DSP_NEXT                                                                                                   \
-    "add r10, r10, #1\n\t"                                                                                             \
-    "strd r10, r11, [sp, #at_x]\n\t"                                                                                   \
-    "cmp r10, lr\n\t"                                                                                                  \
+    "add r0, r0, #1\n\t"                                                                                               \
+    "strd r0, r1, [sp, #at_x]\n\t"                                                                                     \
+    "cmp r0, lr\n\t"                                                                                                   \
     "blo.w tsr_dsp_next_column\n\t"
 
-/* Goes to .Lnext if a group but the winner's and that of r4, which has been judged, has a sum within the limit. */
+/* Goes to .Lnext if a group but the winner's and that of r11, which has been judged, has a sum within the limit. */
 #define TSR_DSP_JUDGE_ALL_BUT(uqsub)                                                                                   \
-    "add r0, sp, #at_least\n\t"                                                                                        \
-    "str r7, [r0, r4, lsl #2]\n\t"                                                                                     \
-    "ldr r1, [sp, #at_stride]\n\t"                                                                                     \
+    "add r3, sp, #at_least\n\t"                                                                                       \
+    "str r7, [r3, r11, lsl #2]\n\t"                                                                                    \
+    "ldr r4, [sp, #at_stride]\n\t"                                                                                     \
     ".Lfar_next:\n\t"                                                                                                  \
-    "ldr r2, [r0], #4\n\t" uqsub " r2, r7, r2\n\t"                                                                     \
+    "ldr r2, [r3], #4\n\t"                                                                                            \
+    uqsub " r2, r7, r2\n\t"                                                                                            \
     "cmp r2, #0\n\t"                                                                                                   \
     "bne .Lnext\n\t"                                                                                                   \
-    "subs r1, r1, #8\n\t"                                                                                              \
+    "subs r4, r4, #8\n\t"                                                                                              \
     "bne .Lfar_next\n\t"
 
 #endif

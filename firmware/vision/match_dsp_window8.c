@@ -31,22 +31,22 @@
     "sel lr, r5, lr\n\t"                                                                                               \
     ".endm\n\t"
 
-/* Four least words at r0; r7 is above the limit. */
+/* Four least words at r11; r7 is above the limit. */
 #define JUDGE_LEAST                                                                                                    \
     ".macro judge_least\n\t"                                                                                           \
-    "ldmia r0!, {r1-r4}\n\t"                                                                                           \
-    "uqsub8 r1, r7, r1\n\t"                                                                                            \
+    "ldmia r11!, {r2-r4, r10}\n\t"                                                                                           \
     "uqsub8 r2, r7, r2\n\t"                                                                                            \
     "uqsub8 r3, r7, r3\n\t"                                                                                            \
     "uqsub8 r4, r7, r4\n\t"                                                                                            \
-    "orr r1, r1, r2\n\t"                                                                                               \
-    "orr r3, r3, r4\n\t"                                                                                               \
-    "orrs r1, r1, r3\n\t"                                                                                              \
+    "uqsub8 r10, r7, r10\n\t"                                                                                            \
+    "orr r2, r2, r3\n\t"                                                                                               \
+    "orr r4, r4, r10\n\t"                                                                                               \
+    "orrs r2, r2, r4\n\t"                                                                                              \
     "bne.w .Lfar\n\t"                                                                                                  \
     ".endm\n\t"
 
 /*
- * As in match_dsp_window.c; r12 becomes 1 in every byte.
+ * As in match_dsp_window.c.
  *
  * Bit 8 l of e is 1 if lane l has the least sum, bit 8 l of f if lane 4 + l has.
  * The product of 16 e + f and 2^27 + 2^18 + 2^9 + 1 has them at bits 31 - l and
@@ -80,66 +80,66 @@
     "add r9, r8, r4, lsl #3\n\t"
 
 /* Goes to .Lnext if a lane of the own group that is not beside the winner's is within the limit; the sums beside it
- * in r1 and r2. */
+ * in r2 and r3. */
 #define JUDGE_OWN                                                                                                      \
-    "ldrd r0, r1, [r5, #at_sums]\n\t"                                                                                  \
-    "uqsub8 r0, r7, r0\n\t"                                                                                            \
-    "uqsub8 r1, r7, r1\n\t"                                                                                            \
+    "ldrd r2, r3, [r5, #at_sums]\n\t"                                                                                  \
+    "uqsub8 r2, r7, r2\n\t"                                                                                            \
+    "uqsub8 r3, r7, r3\n\t"                                                                                            \
     "tbb [pc, r8]\n\t"                                                                                                 \
     ".Llanes:\n\t"                                                                                                     \
     ".byte (.Llane0-.Llanes)/2, (.Llane1-.Llanes)/2, (.Llane2-.Llanes)/2, (.Llane3-.Llanes)/2\n\t"                     \
     ".byte (.Llane4-.Llanes)/2, (.Llane5-.Llanes)/2, (.Llane6-.Llanes)/2, (.Llane7-.Llanes)/2\n\t"                     \
-    ".Llane0: orrs r0, r1, r0, lsr #16\n\t"                                                                            \
+    ".Llane0: orrs r2, r3, r2, lsr #16\n\t"                                                                            \
     "bne .Lnext\n\t"                                                                                                   \
     "cmp r9, #0\n\t"                                                                                                   \
-    "beq .Lfirst\n\t"                                                                                                  \
+    "beq .Lcentre\n\t"                                                                                                  \
     "b .Lbeside\n\t"                                                                                                   \
-    ".Llane1: orrs r0, r1, r0, lsr #24\n\t"                                                                            \
+    ".Llane1: orrs r2, r3, r2, lsr #24\n\t"                                                                            \
     "b .Llane\n\t"                                                                                                     \
-    ".Llane2: orrs r0, r1, r0, lsl #24\n\t"                                                                            \
+    ".Llane2: orrs r2, r3, r2, lsl #24\n\t"                                                                            \
     "b .Llane\n\t"                                                                                                     \
-    ".Llane3: lsl r0, r0, #16\n\t"                                                                                     \
-    "orrs r0, r0, r1, lsr #8\n\t"                                                                                      \
+    ".Llane3: lsl r2, r2, #16\n\t"                                                                                     \
+    "orrs r2, r2, r3, lsr #8\n\t"                                                                                      \
     "b .Llane\n\t"                                                                                                     \
-    ".Llane4: lsl r0, r0, #8\n\t"                                                                                      \
-    "orrs r0, r0, r1, lsr #16\n\t"                                                                                     \
+    ".Llane4: lsl r2, r2, #8\n\t"                                                                                      \
+    "orrs r2, r2, r3, lsr #16\n\t"                                                                                     \
     "b .Llane\n\t"                                                                                                     \
-    ".Llane5: orrs r0, r0, r1, lsr #24\n\t"                                                                            \
+    ".Llane5: orrs r2, r2, r3, lsr #24\n\t"                                                                            \
     "b .Llane\n\t"                                                                                                     \
-    ".Llane6: orrs r0, r0, r1, lsl #24\n\t"                                                                            \
+    ".Llane6: orrs r2, r2, r3, lsl #24\n\t"                                                                            \
     "b .Llane\n\t"                                                                                                     \
-    ".Llane7: orrs r0, r0, r1, lsl #16\n\t"                                                                            \
+    ".Llane7: orrs r2, r2, r3, lsl #16\n\t"                                                                            \
     ".Llane:\n\t"                                                                                                      \
     "bne .Lnext\n\t"                                                                                                   \
     ".Lbeside:\n\t"                                                                                                    \
     "add r5, r5, r8\n\t"                                                                                               \
-    "ldrb r1, [r5, #at_sums-1]\n\t"                                                                                    \
-    "ldrb r2, [r5, #at_sums+1]\n\t"
+    "ldrb r2, [r5, #at_sums-1]\n\t"                                                                                    \
+    "ldrb r3, [r5, #at_sums+1]\n\t"
 
 /* Another group has a sum within the limit. It may be the lane beside the winner's: is it the only one? */
 #define JUDGE_NEIGHBOURS                                                                                               \
     ".Lfar:\n\t"                                                                                                       \
-    "lsr r4, r9, #3\n\t"                                                                                               \
+    "lsr r11, r9, #3\n\t"                                                                                               \
     "cmp r8, #0\n\t"                                                                                                   \
     "beq .Lfar_below\n\t"                                                                                              \
     "cmp r8, #7\n\t"                                                                                                   \
     "bne .Lnext\n\t"                                                                                                   \
-    "ldr r0, [sp, #at_stride]\n\t"                                                                                     \
-    "add r4, r4, #1\n\t"                                                                                               \
-    "cmp r4, r0, lsr #3\n\t"                                                                                           \
+    "ldr r2, [sp, #at_stride]\n\t"                                                                                     \
+    "add r11, r11, #1\n\t"                                                                                               \
+    "cmp r11, r2, lsr #3\n\t"                                                                                           \
     "beq .Lnext\n\t"                                                                                                   \
-    "ldrd r0, r1, [r5, #at_sums+8]\n\t"                                                                                \
-    "orr r0, r0, #0xff\n\t"                                                                                            \
+    "ldrd r2, r3, [r5, #at_sums+8]\n\t"                                                                                \
+    "orr r2, r2, #0xff\n\t"                                                                                            \
     "b .Lfar_judge\n\t"                                                                                                \
     ".Lfar_below:\n\t"                                                                                                 \
-    "subs r4, r4, #1\n\t"                                                                                              \
+    "subs r11, r11, #1\n\t"                                                                                              \
     "blo .Lnext\n\t"                                                                                                   \
-    "ldrd r0, r1, [r5, #at_sums-8]\n\t"                                                                                \
-    "orr r1, r1, #0xff000000\n\t"                                                                                      \
+    "ldrd r2, r3, [r5, #at_sums-8]\n\t"                                                                                \
+    "orr r3, r3, #0xff000000\n\t"                                                                                      \
     ".Lfar_judge:\n\t"                                                                                                 \
-    "uqsub8 r0, r7, r0\n\t"                                                                                            \
-    "uqsub8 r1, r7, r1\n\t"                                                                                            \
-    "orrs r0, r0, r1\n\t"                                                                                              \
+    "uqsub8 r2, r7, r2\n\t"                                                                                            \
+    "uqsub8 r3, r7, r3\n\t"                                                                                            \
+    "orrs r2, r2, r3\n\t"                                                                                              \
     "bne .Lnext\n\t"                                                                                                   \
     TSR_DSP_JUDGE_ALL_BUT("uqsub8") "b .Lown\n\t"
 
@@ -156,7 +156,8 @@ __attribute__((naked, used)) void tsr_dsp_match_pixels8(void)
         FIND_WINNER
         TSR_DSP_CLAIM
         "usat r7, #8, r7, asr #20\n\t"
-        "mul r7, r7, r12\n\t"
+        "ldr r10, [sp, #at_key+4]\n\t"
+        "mul r7, r7, r10\n\t"
         TSR_DSP_JUDGE_LEAST
         ".Lleast_4: judge_least\n\t"
         ".Lleast_3: judge_least\n\t"
