@@ -38,8 +38,7 @@ static inline uint32_t tsr_dsp_difference(uint32_t a, uint32_t b)
 
 /* Scratch in front of the columns: the right rows' ends, with the pixels that stand for those outside. */
 #define TSR_DSP_EDGE_LEN(disparities) ((disparities) + 16u)
-_Static_assert(2u * TSR_DSP_EDGE_LEN(TSR_MATCH_DISPARITIES_MIN) <=
-                   4u * TSR_MATCH_DISPARITIES_MIN + TSR_MATCH_EDGE_ROOM,
+_Static_assert(2u * TSR_DSP_EDGE_LEN(TSR_MATCH_DISPARITIES_MIN) <= 4u * TSR_MATCH_DISPARITIES_MIN + TSR_MATCH_EDGE_ROOM,
                "two edges fit, and the more the larger D");
 
 /* One row of the map: what does not change from pixel to pixel. Rows of the right picture are mirrored. */
@@ -84,16 +83,16 @@ struct tsr_dsp_frame {
     const uint8_t *tex_leave;
     uint32_t unique_scale; /* limit + 1 of eq. (15) is (sum * scale + one) >> 20 */
     uint32_t unique_one;
-    uint16_t *choices; /* [x], 32 d + offset_q4, or TSR_MATCH_CHOICE_NONE */
-    uint32_t stop;     /* the pixel that needs tsr_dsp_prepare() */
+    uint16_t *choices;       /* [x], 32 d + offset_q4, or TSR_MATCH_CHOICE_NONE */
+    uint32_t stop;           /* the pixel that needs tsr_dsp_prepare() */
     const void *least_entry; /* where the least sums of all groups are judged */
     uint32_t lane_key;       /* see FIND_WINNER in match_dsp_window8.c */
     uint32_t ones_again;
     uint32_t change; /* the pixel from which more changes than that a lane can be chosen */
     const struct tsr_dsp_row *row;
     uint32_t sums[TSR_DSP_GROUPS_MAX * TSR_DSP_GROUP_LANES / 2u + 1u]; /* the last one's neighbour is out of reach */
-    uint32_t least[TSR_DSP_GROUPS_MAX]; /* of every group, two halves or four bytes */
-    uint32_t align[2];                  /* with nine registers pushed, a multiple of 8 bytes */
+    uint32_t least[TSR_DSP_GROUPS_MAX];                                /* of every group, two halves or four bytes */
+    uint32_t align[2]; /* with nine registers pushed, a multiple of 8 bytes */
 };
 
 /* The assembly's offsets. */
@@ -104,15 +103,16 @@ struct tsr_dsp_frame {
 #define TSR_DSP_AT_SUMS 100
 #define TSR_DSP_AT_LEAST 360
 #define TSR_DSP_FRAME_LEN 432
-#define TSR_DSP_TEXT_OF(number) #number
-#define TSR_DSP_TEXT(number) TSR_DSP_TEXT_OF(number)
-#define TSR_DSP_EQUATES \
-    ".equ at_x, " TSR_DSP_TEXT(TSR_DSP_AT_X) "\n\t" \
-    ".equ at_stride, " TSR_DSP_TEXT(TSR_DSP_AT_STRIDE) "\n\t" \
-    ".equ at_least_entry, " TSR_DSP_TEXT(TSR_DSP_AT_LEAST_ENTRY) "\n\t" \
-    ".equ at_key, " TSR_DSP_TEXT(TSR_DSP_AT_KEY) "\n\t" \
-    ".equ at_sums, " TSR_DSP_TEXT(TSR_DSP_AT_SUMS) "\n\t" \
-    ".equ at_least, " TSR_DSP_TEXT(TSR_DSP_AT_LEAST) "\n\t"
+#define TSR_DSP_TEXT(number) #number
+#define TSR_DSP_EQUATE(name, value) ".equ " name ", " TSR_DSP_TEXT(value) "\n\t"
+#define TSR_DSP_EQUATES                                                                                                \
+    TSR_DSP_EQUATE("at_x", TSR_DSP_AT_X)                                                                               \
+    TSR_DSP_EQUATE("at_stride", TSR_DSP_AT_STRIDE)                                                                     \
+    TSR_DSP_EQUATE("at_least_entry", TSR_DSP_AT_LEAST_ENTRY)                                                           \
+    TSR_DSP_EQUATE("at_key", TSR_DSP_AT_KEY)                                                                           \
+    TSR_DSP_EQUATE("at_sums", TSR_DSP_AT_SUMS)                                                                         \
+    TSR_DSP_EQUATE("at_least", TSR_DSP_AT_LEAST)                                                                       \
+    TSR_DSP_EQUATE("frame_len", TSR_DSP_FRAME_LEN)
 
 /* Matches the pixels of a row, from the one tsr_dsp_begin() chooses on. */
 void tsr_dsp_match_pixels(const struct tsr_dsp_row *row);

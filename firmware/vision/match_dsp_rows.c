@@ -32,6 +32,7 @@ struct quads {
 
 /* above + 2 row + below of the next four columns: r11 even, r12 odd. */
 #define ADD_VERTICALLY                                                                                                 \
+    ".macro add_vertically\n\t"                                                                                        \
     "ldr lr, [r0], #4\n\t"                                                                                             \
     "uxtb16 r11, lr\n\t"                                                                                               \
     "uxtb16 r12, lr, ror #8\n\t"                                                                                       \
@@ -42,38 +43,58 @@ struct quads {
     "uxtab16 r11, r11, lr\n\t"                                                                                         \
     "uxtab16 r11, r11, lr\n\t"                                                                                         \
     "uxtab16 r12, r12, lr, ror #8\n\t"                                                                                 \
-    "uxtab16 r12, r12, lr, ror #8\n\t"
+    "uxtab16 r12, r12, lr, ror #8\n\t"                                                                                 \
+    ".endm\n\t"
 
 /* The columns to the right less those of this register, clipped to 0 .. 65535 - room and that much higher by room, a
  * quarter of it. */
-#define DERIVE(columns, next)                                                                                          \
-    "lsl lr, " next ", #16\n\t"                                                                                        \
-    "orr lr, lr, " columns ", lsr #16\n\t"                                                                             \
+#define DERIVE                                                                                                         \
+    ".macro derive columns, next\n\t"                                                                                  \
+    "lsl lr, \\next, #16\n\t"                                                                                          \
+    "orr lr, lr, \\columns, lsr #16\n\t"                                                                               \
     "uadd16 lr, lr, r6\n\t"                                                                                            \
-    "uqsub16 lr, lr, " columns "\n\t"                                                                                  \
+    "uqsub16 lr, lr, \\columns\n\t"                                                                                    \
     "uqadd16 lr, lr, r7\n\t"                                                                                           \
-    "and " columns ", r8, lr, lsr #2\n\t"
+    "and \\columns, r8, lr, lsr #2\n\t"                                                                                \
+    ".endm\n\t"
 
-#define FILTER_QUADS(turn, step)                                                                                       \
+#define FILTER_QUADS                                                                                                   \
+    ".macro filter_quads step\n\t"                                                                                     \
     "push {r4-r11, lr}\n\t"                                                                                            \
     "ldmia r0, {r0-r10}\n\t"                                                                                           \
-    "1:\n\t" ADD_VERTICALLY DERIVE("r4", "r11") DERIVE("r5", "r12") "orr r4, r4, r5, lsl #8\n\t"                       \
-    "usub8 r4, r4, r9\n\t" turn "str r4, [r3], #" step "\n\t"                                                          \
+    "1:\n\t"                                                                                                           \
+    "add_vertically\n\t"                                                                                               \
+    "derive r4, r11\n\t"                                                                                               \
+    "derive r5, r12\n\t"                                                                                               \
+    "orr r4, r4, r5, lsl #8\n\t"                                                                                       \
+    "usub8 r4, r4, r9\n\t"                                                                                             \
+    ".if \\step < 0\n\t"                                                                                               \
+    "rev r4, r4\n\t"                                                                                                   \
+    ".endif\n\t"                                                                                                       \
+    "str r4, [r3], #\\step\n\t"                                                                                        \
     "mov r4, r11\n\t"                                                                                                  \
     "mov r5, r12\n\t"                                                                                                  \
     "cmp r0, r10\n\t"                                                                                                  \
     "blo 1b\n\t"                                                                                                       \
-    "pop {r4-r11, pc}\n\t"
+    "pop {r4-r11, pc}\n\t"                                                                                             \
+    ".endm\n\t"
+
+/* Assembler macros outlive the function they stand in. */
+#define FILTER(step)                                                                                                   \
+    ADD_VERTICALLY DERIVE FILTER_QUADS "filter_quads " step "\n\t"                                                     \
+                                       ".purgem add_vertically\n\t"                                                    \
+                                       ".purgem derive\n\t"                                                            \
+                                       ".purgem filter_quads\n\t"
 
 static __attribute__((naked)) void filter_quads(const struct quads *quads)
 {
-    __asm volatile(FILTER_QUADS("", "4"));
+    __asm volatile(FILTER("4"));
 }
 
 /* From the row's end downward, mirrored. */
 static __attribute__((naked)) void filter_quads_mirrored(const struct quads *quads)
 {
-    __asm volatile(FILTER_QUADS("rev r4, r4\n\t", "-4"));
+    __asm volatile(FILTER("-4"));
 }
 
 /* One pixel, with the columns beside it. */
@@ -122,7 +143,11 @@ static void filter_row(const struct tsr_gray *frame, unsigned y, uint8_t *kept, 
                                 .excess = (255u - 2u * (unsigned)cap) * 0x01010101u,
                                 .above_end = rows[0] + 4u + done};
     uint8_t first = derive_pixel(rows, 0, 1, cap);
-    (mirror ? filter_quads_mirrored : filter_quads)(&quads);
+    if (mirror) {
+        filter_quads_mirrored(&quads);
+    } else {
+        filter_quads(&quads);
+    }
     for (unsigned x = done + 1u; x <= last; x++) {
         row[mirror ? last - x : x] = derive_pixel(rows, x - 1u, x < last ? x + 1u : last, cap);
     }
@@ -192,13 +217,14 @@ void tsr_dsp_write_row(const struct tsr_match *match, unsigned y)
     uint16_t *value = match->map + (size_t)y * match->config.width;
     int to_claim = -2 * ((int)match->config.width + match->config.search_start_px + 1);
     uint32_t found, d, at;
-    __asm volatile("1:\n\t" WRITE_PIXEL "cmp %[choice], %[end]\n\t"
-                   "beq 3f\n\t" WRITE_PIXEL "cmp %[choice], %[end]\n\t"
-                   "bne 1b\n\t"
-                   "3:"
+    /* Two at a time, of an odd number one first. */
+    __asm volatile("tst %[width], #1\n\t"
+                   "bne 3f\n\t"
+                   "1:\n\t" WRITE_PIXEL "3:\n\t" WRITE_PIXEL "cmp %[choice], %[end]\n\t"
+                   "bne 1b"
                    : [choice] "+&r"(choice), [value] "+&r"(value), [found] "=&r"(found), [d] "=&r"(d), [at] "=&r"(at)
                    : [end] "r"(end), [none] "r"(TSR_MATCH_CHOICE_NONE), [to_claim] "r"(to_claim),
-                     [tolerance] "r"(match->config.lr_tolerance_px)
+                     [tolerance] "r"(match->config.lr_tolerance_px), [width] "r"(match->config.width)
                    : "cc", "memory");
 }
 #endif

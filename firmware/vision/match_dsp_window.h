@@ -53,6 +53,7 @@
 /* x and texture, which is negative if there is too little, the claim of eq. (17), the limit of eq. (15) as a number
  * with 20 fraction bits in r7, choices in r12 and stop in lr. */
 #define TSR_DSP_CLAIM                                                                                                  \
+    ".macro claim\n\t"                                                                                                 \
     "add r0, sp, #at_x\n\t"                                                                                            \
     "ldmia r0, {r0-r3, r7, r10-r12, lr}\n\t"                                                                           \
     "ldrb r3, [r3, r0]\n\t"                                                                                            \
@@ -66,18 +67,22 @@
     "orr r11, r9, r11, lsl #7\n\t"                                                                                     \
     "cmp r11, r10\n\t"                                                                                                 \
     "it lo\n\t"                                                                                                        \
-    "strhlo r11, [r2, r3, lsl #1]\n\t"
+    "strhlo r11, [r2, r3, lsl #1]\n\t"                                                                                 \
+    ".endm\n\t"
 
 /* Judges the groups by their least sums, the own one as if it were above the limit. Too little texture raises the
  * limit above all sums. */
 #define TSR_DSP_JUDGE_LEAST                                                                                            \
+    ".macro judge_others\n\t"                                                                                          \
     "orr r7, r7, r1, asr #31\n\t"                                                                                      \
     "add r11, sp, #at_least\n\t"                                                                                       \
     "str r7, [r11, r4, lsl #2]\n\t"                                                                                    \
-    "ldr.w pc, [sp, #at_least_entry]\n\t"
+    "ldr.w pc, [sp, #at_least_entry]\n\t"                                                                              \
+    ".endm\n\t"
 
 /* Eq. (16) from the sums below (r2) and above (r3); the sum below is the larger one here. */
 #define TSR_DSP_INTERPOLATE                                                                                            \
+    ".macro interpolate\n\t"                                                                                           \
     "subs r4, r2, r3\n\t"                                                                                              \
     "blo .Labove\n\t"                                                                                                  \
     "sub r2, r2, r6\n\t"                                                                                               \
@@ -85,16 +90,18 @@
     "lsl r2, r2, #1\n\t"                                                                                               \
     "udiv r4, r4, r2\n\t"                                                                                              \
     "add r9, r4, r9, lsl #5\n\t"                                                                                       \
-    "strh r9, [r12, r0, lsl #1]\n\t"
+    "strh r9, [r12, r0, lsl #1]\n\t"                                                                                   \
+    ".endm\n\t"
 
 /* The other cases of it: d = 0, the sum above is the larger one, it is out of reach. */
-#define TSR_DSP_OFF_CENTRE(out_of_reach)                                                                               \
+#define TSR_DSP_OFF_CENTRE                                                                                             \
+    ".macro off_centre out_of_reach\n\t"                                                                               \
     ".Lcentre:\n\t"                                                                                                    \
     "lsl r9, r9, #5\n\t"                                                                                               \
     "strh r9, [r12, r0, lsl #1]\n\t"                                                                                   \
     "b .Lnext\n\t"                                                                                                     \
     ".Labove:\n\t"                                                                                                     \
-    "cmp r3, #" out_of_reach "\n\t"                                                                                        \
+    "cmp r3, #\\out_of_reach\n\t"                                                                                      \
     "bhs .Lcentre\n\t"                                                                                                 \
     "sub r2, r3, r6\n\t"                                                                                               \
     "sub r4, r2, r4, lsl #4\n\t"                                                                                       \
@@ -102,25 +109,34 @@
     "udiv r4, r4, r2\n\t"                                                                                              \
     "rsb r9, r4, r9, lsl #5\n\t"                                                                                       \
     "strh r9, [r12, r0, lsl #1]\n\t"                                                                                   \
-    "b .Lnext\n\t"
+    "b .Lnext\n\t"                                                                                                     \
+    ".endm\n\t"
 
 #define TSR_DSP_NEXT                                                                                                   \
+    ".macro end_pixel\n\t"                                                                                             \
     "add r0, r0, #1\n\t"                                                                                               \
     "strd r0, r1, [sp, #at_x]\n\t"                                                                                     \
     "cmp r0, lr\n\t"                                                                                                   \
-    "blo.w tsr_dsp_next_column\n\t"
+    "blo.w tsr_dsp_next_column\n\t"                                                                                    \
+    ".endm\n\t"
 
 /* Goes to .Lnext if a group but the winner's and that of r11, which has been judged, has a sum within the limit. */
-#define TSR_DSP_JUDGE_ALL_BUT(uqsub)                                                                                   \
-    "add r3, sp, #at_least\n\t"                                                                                       \
+#define TSR_DSP_JUDGE_ALL_BUT                                                                                          \
+    ".macro judge_all_but uqsub\n\t"                                                                                   \
+    "add r3, sp, #at_least\n\t"                                                                                        \
     "str r7, [r3, r11, lsl #2]\n\t"                                                                                    \
     "ldr r4, [sp, #at_stride]\n\t"                                                                                     \
     ".Lfar_next:\n\t"                                                                                                  \
-    "ldr r2, [r3], #4\n\t"                                                                                            \
-    uqsub " r2, r7, r2\n\t"                                                                                            \
+    "ldr r2, [r3], #4\n\t"                                                                                             \
+    "\\uqsub r2, r7, r2\n\t"                                                                                           \
     "cmp r2, #0\n\t"                                                                                                   \
     "bne .Lnext\n\t"                                                                                                   \
     "subs r4, r4, #8\n\t"                                                                                              \
-    "bne .Lfar_next\n\t"
+    "bne .Lfar_next\n\t"                                                                                               \
+    ".endm\n\t"
+
+#define TSR_DSP_MACROS                                                                                                 \
+    TSR_DSP_EQUATES TSR_DSP_MOVE_COLUMNS TSR_DSP_CLAIM TSR_DSP_JUDGE_LEAST TSR_DSP_INTERPOLATE TSR_DSP_OFF_CENTRE      \
+        TSR_DSP_NEXT TSR_DSP_JUDGE_ALL_BUT
 
 #endif
