@@ -200,6 +200,7 @@ void tsr_dsp_add_census(const struct tsr_match *match, unsigned y, unsigned time
     }
 }
 
+/* What leaves is part of the sum, and that is at most 240: no lane borrows or carries. */
 static void move_columns(const struct tsr_match *match, unsigned y_new, unsigned y_old)
 {
     unsigned width = match->config.width;
@@ -212,8 +213,8 @@ static void move_columns(const struct tsr_match *match, unsigned y_new, unsigned
         struct lanes enter = lanes_of(&new, x, width);
         struct lanes leave = lanes_of(&old, x, width);
         for (unsigned d = 0; d < disparities; d += 4u) {
-            uint32_t moved = tsr_dsp_add(tsr_dsp_load(column + d), cost_of(&masks, &enter, d));
-            tsr_dsp_store(column + d, tsr_dsp_subtract(moved, cost_of(&masks, &leave, d)));
+            uint32_t stays = tsr_dsp_load(column + d) - cost_of(&masks, &leave, d);
+            tsr_dsp_store(column + d, stays + cost_of(&masks, &enter, d));
         }
     }
 }

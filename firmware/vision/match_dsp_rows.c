@@ -12,48 +12,89 @@
 
 #include "match_dsp.h"
 
-/* Four pixels as two words of halves: columns (0, 2) and (1, 3). */
-struct quad {
-    uint32_t even;
-    uint32_t odd;
+/* The arguments of naked functions are in registers only. */
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+
+/* What the loop over a row works on: four columns at a time, from the second four on. */
+struct quads {
+    const uint8_t *above;
+    const uint8_t *row;
+    const uint8_t *below;
+    uint8_t *out;
+    uint32_t even; /* above + 2 row + below of the columns 0 and 2 */
+    uint32_t odd;  /* of 1 and 3 */
+    uint32_t bias; /* in both halves, 4 cap and the rounding: below it, the derivative is at its least */
+    uint32_t room; /* in both halves, what lies above the largest such derivative */
+    uint32_t mask;
+    uint32_t excess; /* in every byte, what a quarter of room makes of a byte */
+    const uint8_t *above_end;
 };
 
-/* above + 2 row + below of four columns. */
-static inline struct quad add_vertically(uint32_t above, uint32_t row, uint32_t below)
+/* above + 2 row + below of the next four columns: r11 even, r12 odd. */
+#define ADD_VERTICALLY                                                                                                 \
+    ".macro add_vertically\n\t"                                                                                        \
+    "ldr lr, [r0], #4\n\t"                                                                                             \
+    "uxtb16 r11, lr\n\t"                                                                                               \
+    "uxtb16 r12, lr, ror #8\n\t"                                                                                       \
+    "ldr lr, [r2], #4\n\t"                                                                                             \
+    "uxtab16 r11, r11, lr\n\t"                                                                                         \
+    "uxtab16 r12, r12, lr, ror #8\n\t"                                                                                 \
+    "ldr lr, [r1], #4\n\t"                                                                                             \
+    "uxtab16 r11, r11, lr\n\t"                                                                                         \
+    "uxtab16 r11, r11, lr\n\t"                                                                                         \
+    "uxtab16 r12, r12, lr, ror #8\n\t"                                                                                 \
+    "uxtab16 r12, r12, lr, ror #8\n\t"                                                                                 \
+    ".endm\n\t"
+
+/* The columns to the right less those of this register, clipped to 0 .. 65535 - room and that much higher by room, a
+ * quarter of it. */
+#define DERIVE                                                                                                         \
+    ".macro derive columns, next\n\t"                                                                                  \
+    "lsl lr, \\next, #16\n\t"                                                                                          \
+    "orr lr, lr, \\columns, lsr #16\n\t"                                                                               \
+    "uadd16 lr, lr, r6\n\t"                                                                                            \
+    "uqsub16 lr, lr, \\columns\n\t"                                                                                    \
+    "uqadd16 lr, lr, r7\n\t"                                                                                           \
+    "and \\columns, r8, lr, lsr #2\n\t"                                                                                \
+    ".endm\n\t"
+
+#define FILTER_QUADS                                                                                                   \
+    ".macro filter_quads step\n\t"                                                                                     \
+    "push {r4-r11, lr}\n\t"                                                                                            \
+    "ldmia r0, {r0-r10}\n\t"                                                                                           \
+    "1:\n\t"                                                                                                           \
+    "add_vertically\n\t"                                                                                               \
+    "derive r4, r11\n\t"                                                                                               \
+    "derive r5, r12\n\t"                                                                                               \
+    "orr r4, r4, r5, lsl #8\n\t"                                                                                       \
+    "usub8 r4, r4, r9\n\t"                                                                                             \
+    ".if \\step < 0\n\t"                                                                                               \
+    "rev r4, r4\n\t"                                                                                                   \
+    ".endif\n\t"                                                                                                       \
+    "str r4, [r3], #\\step\n\t"                                                                                        \
+    "mov r4, r11\n\t"                                                                                                  \
+    "mov r5, r12\n\t"                                                                                                  \
+    "cmp r0, r10\n\t"                                                                                                  \
+    "blo 1b\n\t"                                                                                                       \
+    "pop {r4-r11, pc}\n\t"                                                                                             \
+    ".endm\n\t"
+
+/* Assembler macros outlive the function they stand in. */
+#define FILTER(step)                                                                                                   \
+    ADD_VERTICALLY DERIVE FILTER_QUADS "filter_quads " step "\n\t"                                                     \
+                                       ".purgem add_vertically\n\t"                                                    \
+                                       ".purgem derive\n\t"                                                            \
+                                       ".purgem filter_quads\n\t"
+
+static __attribute__((naked)) void filter_quads(const struct quads *quads)
 {
-    struct quad quad;
-    __asm("uxtb16 %0, %2\n\tuxtab16 %0, %0, %2\n\tuxtab16 %0, %0, %3\n\tuxtab16 %0, %0, %4\n\t"
-          "uxtb16 %1, %2, ror #8\n\tuxtab16 %1, %1, %2, ror #8\n\tuxtab16 %1, %1, %3, ror #8\n\t"
-          "uxtab16 %1, %1, %4, ror #8"
-          : "=&r"(quad.even), "=&r"(quad.odd)
-          : "r"(row), "r"(above), "r"(below));
-    return quad;
+    __asm volatile(FILTER("4"));
 }
 
-/* floor(difference / 4) with the rounding and 4 cap in bias, clipped to 0 .. 255. */
-static inline uint32_t divide(uint32_t right, uint32_t left, uint32_t bias)
+/* From the row's end downward, mirrored. */
+static __attribute__((naked)) void filter_quads_mirrored(const struct quads *quads)
 {
-    uint32_t result;
-    __asm("ssub16 %0, %1, %2\n\tsadd16 %0, %0, %3\n\tshadd16 %0, %0, %4\n\tshadd16 %0, %0, %4\n\tusat16 %0, #8, %0"
-          : "=&r"(result)
-          : "r"(right), "r"(left), "r"(bias), "r"(0));
-    return result;
-}
-
-/* Bytes above the limit become the limit; room = 255 - limit in each byte. */
-static inline uint32_t clip(uint32_t bytes, uint32_t room)
-{
-    uint32_t result;
-    __asm("uqadd8 %0, %1, %2\n\tusub8 %0, %0, %2" : "=&r"(result) : "r"(bytes), "r"(room));
-    return result;
-}
-
-/* What the columns left and right of two quads give: pixels 1 .. 4 of the first. */
-static inline uint32_t derive(struct quad quad, struct quad next, uint32_t bias, uint32_t room)
-{
-    uint32_t even = quad.even >> 16 | next.even << 16;
-    uint32_t odd = quad.odd >> 16 | next.odd << 16;
-    return clip(divide(even, quad.even, bias) | divide(odd, quad.odd, bias) << 8, room);
+    __asm volatile(FILTER("-4"));
 }
 
 /* One pixel, with the columns beside it. */
@@ -76,37 +117,41 @@ static void gather_rows(const struct tsr_gray *frame, unsigned y, uint8_t *kept,
     rows[2] = y + 1u < frame->height ? row + frame->stride : copy;
 }
 
-static inline struct quad quad_at(const uint8_t *const rows[3], unsigned x)
+static uint32_t add_two(const uint8_t *const rows[3], unsigned x)
 {
-    return add_vertically(tsr_dsp_load(rows[0] + x), tsr_dsp_load(rows[1] + x), tsr_dsp_load(rows[2] + x));
+    uint32_t low = rows[0][x] + 2u * rows[1][x] + rows[2][x];
+    return low | (rows[0][x + 2u] + 2u * rows[1][x + 2u] + rows[2][x + 2u]) << 16;
 }
 
 /* Row y of a frame in place: eq. (10). */
-static inline __attribute__((always_inline)) void filter_row(const struct tsr_gray *frame, unsigned y, uint8_t *kept,
-                                                             int cap, bool mirror)
+static void filter_row(const struct tsr_gray *frame, unsigned y, uint8_t *kept, int cap, bool mirror)
 {
     const uint8_t *rows[3];
     gather_rows(frame, y, kept, rows);
     unsigned last = frame->width - 1u;
+    unsigned done = 4u * (frame->width / 4u) - 4u; /* pixels 1 .. done */
     uint8_t *row = frame->pixels + (size_t)y * frame->stride;
-    uint32_t bias = (2u + 4u * (unsigned)cap) * 0x10001u;
-    uint32_t room = (255u - 2u * (unsigned)cap) * 0x01010101u;
-    struct quad quad = quad_at(rows, 0);
-    unsigned x = 0;
-    for (; x + 8u <= last + 1u; x += 4u) {
-        struct quad next = quad_at(rows, x + 4u);
-        uint32_t bytes = derive(quad, next, bias, room);
-        if (mirror) {
-            tsr_dsp_store(row + (last - x - 4u), __builtin_bswap32(bytes));
-        } else {
-            tsr_dsp_store(row + x + 1u, bytes);
-        }
-        quad = next;
+    const struct quads quads = {.above = rows[0] + 4,
+                                .row = rows[1] + 4,
+                                .below = rows[2] + 4,
+                                .out = mirror ? row + (last - 4u) : row + 1,
+                                .even = add_two(rows, 0),
+                                .odd = add_two(rows, 1),
+                                .bias = (4u * (unsigned)cap + 2u) * 0x10001u,
+                                .room = (65532u - 8u * (unsigned)cap) * 0x10001u,
+                                .mask = 0x00ff00ffu,
+                                .excess = (255u - 2u * (unsigned)cap) * 0x01010101u,
+                                .above_end = rows[0] + 4u + done};
+    uint8_t first = derive_pixel(rows, 0, 1, cap);
+    if (mirror) {
+        filter_quads_mirrored(&quads);
+    } else {
+        filter_quads(&quads);
     }
-    for (x++; x <= last; x++) {
+    for (unsigned x = done + 1u; x <= last; x++) {
         row[mirror ? last - x : x] = derive_pixel(rows, x - 1u, x < last ? x + 1u : last, cap);
     }
-    row[mirror ? last : 0] = derive_pixel(rows, 0, 1, cap);
+    row[mirror ? last : 0] = first;
 }
 
 void tsr_dsp_prefilter_row(const struct tsr_match *match, unsigned y)
@@ -117,33 +162,69 @@ void tsr_dsp_prefilter_row(const struct tsr_match *match, unsigned y)
     filter_row(&match->right, y, kept + 2u * match->config.width, cap, true);
 }
 
-/* Lanes of a column that does not have them all get what lies behind the row's
- * end, or nothing: they are written when they start. */
 void tsr_dsp_add_row(const struct tsr_match *match, unsigned y, unsigned times)
 {
     const struct tsr_match_config *config = &match->config;
     struct tsr_match_scratch scratch = tsr_match_share_scratch(match);
-    unsigned start = (unsigned)config->search_start_px;
-    unsigned disparities = config->disparities;
+    int start = config->search_start_px;
+    int radius = config->window / 2;
     const uint8_t *left = match->left.pixels + (size_t)y * match->left.stride;
-    const uint8_t *right = match->right.pixels + (size_t)y * match->right.stride + (config->width - 1u);
-    for (unsigned x = 0; x < config->width - start; x++) {
-        uint8_t *column = scratch.columns + (size_t)x * disparities;
-        uint32_t pixel = left[start + x] * 0x01010101u;
-        unsigned lanes = x + 1u < disparities ? x + 1u : disparities;
-        unsigned d = 0;
-        for (; d + 4u <= lanes; d += 4u) {
-            uint32_t difference = tsr_dsp_difference(pixel, tsr_dsp_load(right - x + d));
-            tsr_dsp_store(column + d, tsr_dsp_load(column + d) + times * difference);
+    const uint8_t *right = match->right.pixels + (size_t)y * match->right.stride;
+    uint8_t *edge = match->scratch;
+    tsr_dsp_fill_edge(config, right, edge);
+    for (int x = start > radius ? start - radius : 0; x < config->width; x++) {
+        uint8_t *column = scratch.columns + (size_t)x * config->disparities;
+        const uint8_t *first = right + (config->width - 1 - x + start);
+        if (x - start < config->disparities - 1) {
+            first = tsr_dsp_at_edge(config, edge, x - start);
         }
-        for (; d < lanes; d++) {
-            uint32_t difference = tsr_dsp_difference(pixel & 0xffu, right[(int)d - (int)x]);
-            column[d] = (uint8_t)(column[d] + times * difference);
+        uint32_t pixel = left[x] * 0x01010101u;
+        unsigned lanes = TSR_DSP_GROUP_LANES * tsr_dsp_count_groups(config, x - start);
+        for (unsigned d = 0; d < lanes; d += 4u) {
+            uint32_t difference = tsr_dsp_difference(pixel, tsr_dsp_load(first + d));
+            tsr_dsp_store(column + d, tsr_dsp_load(column + d) + times * difference);
         }
     }
     for (unsigned x = 0; x < config->width; x++) {
         uint32_t difference = tsr_dsp_difference(left[x], config->prefilter_cap);
         scratch.texture[x] = (uint8_t)(scratch.texture[x] + times * difference);
     }
+}
+
+#define WRITE_PIXEL                                                                                                    \
+    "ldrh %[found], [%[choice]], #2\n\t"                                                                               \
+    "cmp %[found], %[none]\n\t"                                                                                        \
+    "beq 2f\n\t"                                                                                                       \
+    "add %[d], %[found], #16\n\t"                                                                                      \
+    "lsr %[d], %[d], #5\n\t"                                                                                           \
+    "sub %[at], %[choice], %[d], lsl #1\n\t"                                                                           \
+    "ldrh %[at], [%[at], %[to_claim]]\n\t"                                                                             \
+    "sub %[found], %[found], %[d], lsl #4\n\t"                                                                         \
+    "and %[at], %[at], #127\n\t"                                                                                       \
+    "usad8 %[at], %[at], %[d]\n\t"                                                                                     \
+    "cmp %[at], %[tolerance]\n\t"                                                                                      \
+    "it hi\n\t"                                                                                                        \
+    "movhi %[found], %[none]\n\t"                                                                                      \
+    "2:\n\t"                                                                                                           \
+    "strh %[found], [%[value]], #2\n\t"
+
+/* The choices are 32 d + offset_q4, and the claims lie in front of them. */
+void tsr_dsp_write_row(const struct tsr_match *match, unsigned y)
+{
+    struct tsr_match_scratch scratch = tsr_match_share_scratch(match);
+    const uint16_t *choice = scratch.choices;
+    const uint16_t *end = choice + match->config.width;
+    uint16_t *value = match->map + (size_t)y * match->config.width;
+    int to_claim = -2 * ((int)match->config.width + match->config.search_start_px + 1);
+    uint32_t found, d, at;
+    /* Two at a time, of an odd number one first. */
+    __asm volatile("tst %[width], #1\n\t"
+                   "bne 3f\n\t"
+                   "1:\n\t" WRITE_PIXEL "3:\n\t" WRITE_PIXEL "cmp %[choice], %[end]\n\t"
+                   "bne 1b"
+                   : [choice] "+&r"(choice), [value] "+&r"(value), [found] "=&r"(found), [d] "=&r"(d), [at] "=&r"(at)
+                   : [end] "r"(end), [none] "r"(TSR_MATCH_CHOICE_NONE), [to_claim] "r"(to_claim),
+                     [tolerance] "r"(match->config.lr_tolerance_px), [width] "r"(match->config.width)
+                   : "cc", "memory");
 }
 #endif

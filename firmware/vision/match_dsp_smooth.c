@@ -222,7 +222,7 @@ static inline void choose(const struct row *row, unsigned x, uint32_t least)
     unsigned own = 1u + (below <= limit ? 1u : 0u) + (above <= limit ? 1u : 0u);
     unsigned choice = TSR_MATCH_CHOICE_NONE;
     if (row->unique_off || is_unique(row->cost, words, limit, own)) {
-        choice = TSR_MATCH_CHOICE(d, 0);
+        choice = 32u * d; /* as tsr_dsp_write_row() reads it */
         choice = d - 1u < highest - 1u ? interpolate(choice, below, above, sum) : choice;
     }
     row->choices[x] = (uint16_t)choice;
@@ -261,6 +261,6 @@ void tsr_dsp_smooth_row(const struct tsr_match *match, unsigned y)
             choose(&row, x - start, least);
         }
     }
-    tsr_match_write_row(match, y);
+    tsr_dsp_write_row(match, y);
 }
 #endif

@@ -60,7 +60,7 @@
 __attribute__((naked)) uint32_t tsr_dsp_walk(const struct tsr_dsp_walk *walk)
 {
     __asm volatile("push {r4-r10, lr}\n\t"
-                   "ldmia r0, {r0-r6}\n\t" BEGIN_WALK "1:\n\t" WALK_WORD("")
+                   "ldmia r0, {r0-r2, r4-r6}\n\t" BEGIN_WALK "1:\n\t" WALK_WORD("")
                        WALK_WORD(IF_LAST("r6")) "bne 1b\n\t"
                                                 "mov r0, r8\n\t"
                                                 "pop {r4-r10, pc}\n\t");
@@ -82,7 +82,7 @@ __attribute__((naked)) uint64_t tsr_dsp_walk_last(const struct tsr_dsp_walk *wal
     __asm volatile("push {r4-r11, lr}\n\t"
                    "mov r11, r1\n\t"
                    "mov r12, r2\n\t"
-                   "ldmia r0, {r0-r6}\n\t"
+                   "ldmia r0, {r0-r2, r4-r6}\n\t"
                    "push {r6, r7}\n\t"
                    "mov r3, r11\n\t"
                    "mov r6, r12\n\t"

@@ -32,6 +32,13 @@ INDIRECT = {
     "mps2/loopback.c": (CLOCK, "mps2_an386.c:on_radio"),
     "library/platform_util.c": ("memset",),
 }
+# Functions of nothing but assembly, of which the compiler tells neither frame nor calls: what they push, and whom they
+# call.
+ASSEMBLY = {
+    "tsr_dsp_match_pixels": (468, ("tsr_dsp_begin", "tsr_dsp_prepare")),
+    "match_dsp_rows.c:filter_quads": (36, ()),
+    "match_dsp_rows.c:filter_quads_mirrored": (36, ()),
+}
 LIBRARY_FRAME_LEN = 64  # assumed of newlib's and libgcc's functions, whose frames the compiler does not tell
 
 
@@ -90,6 +97,10 @@ class CallGraph:
             if any(part in str(path) for part in ("CompilerId", "tests/target", "unity")):
                 continue
             self.read(path.read_text("utf-8"))
+        for suffix, (frame, calls) in ASSEMBLY.items():
+            name = next(title for title in self.frame if title == suffix or title.endswith("/" + suffix))
+            self.frame[name] = frame
+            self.calls.setdefault(name, set()).update(calls)
 
     def read(self, text):
         source = re.match(r'graph: \{ title: "([^"]*)"', text)[1]

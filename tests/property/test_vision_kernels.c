@@ -271,6 +271,24 @@ static void test_common_sizes(void)
     }
 }
 
+/* The left border with every distance between the first pixel that has a candidate and the image's border. */
+static void test_search_starts(void)
+{
+    for (unsigned mode = TSR_MATCH_SAD; mode <= TSR_MATCH_SAD8; mode++) {
+        for (unsigned window = 5; window <= (mode == TSR_MATCH_SAD ? 15u : 11u); window += 2) {
+            for (int start = 0; start <= 18; start++) {
+                struct tsr_match_config config = {.width = (uint16_t)(40u + below(5)),
+                                                  .height = (uint16_t)(window + below(4)),
+                                                  .disparities = (uint16_t)(start > 12 ? 16 : 24),
+                                                  .window = (uint8_t)window,
+                                                  .mode = (uint8_t)mode,
+                                                  .search_start_px = (int16_t)start};
+                compare_contents(config, 2);
+            }
+        }
+    }
+}
+
 int main(void)
 {
     const char *text = getenv("SEED");
@@ -288,5 +306,6 @@ int main(void)
     RUN_TEST(test_sad8_is_the_portable_one);
     RUN_TEST(test_census_is_the_portable_one);
     RUN_TEST(test_smooth_is_the_portable_one);
+    RUN_TEST(test_search_starts);
     return UNITY_END();
 }

@@ -22,12 +22,14 @@
 #define STEP_LOG2 2u
 #define WORK_LINES_CAP 2048u
 #define REDUCTION 4u
+/* More than any mode of the matcher asks for. */
+#define SCRATCH_LEN (WORKBENCH_WIDTH_MAX * (8u * TSR_DISPARITY_COUNT_MAX + 64u))
 
 static uint8_t before[WORKBENCH_PIXELS_MAX];
 static uint8_t left[WORKBENCH_PIXELS_MAX];
 static uint8_t right[WORKBENCH_PIXELS_MAX];
 static _Alignas(8) uint8_t pair[TSR_MATCH_PAIR_LEN(WORKBENCH_WIDTH_MAX, WORKBENCH_HEIGHT_MAX, TSR_MATCH_WINDOW_MAX)];
-static _Alignas(8) uint8_t scratch[TSR_MATCH_SCRATCH_LEN(WORKBENCH_WIDTH_MAX, TSR_DISPARITY_COUNT_MAX)];
+static _Alignas(8) uint8_t scratch[SCRATCH_LEN];
 static uint8_t change_state[TSR_CHANGE_STATE_LEN(WORKBENCH_WIDTH_MAX, WORKBENCH_HEIGHT_MAX, REDUCTION)];
 static uint16_t last_map[WORKBENCH_PIXELS_MAX];
 static uint8_t coded[TSR_MAP_ENCODED_LEN_MAX(WORKBENCH_WIDTH_MAX, WORKBENCH_HEIGHT_MAX, TSR_DISPARITY_COUNT_MAX, 0)];
@@ -109,10 +111,11 @@ static void place_view(struct tsr_gray place, const uint8_t *view)
 }
 
 /* The map stands in pair then. */
-static void run_match(const struct workbench_case *bench, size_t pixels)
+static void match_pair(const struct workbench_case *bench, size_t pixels, uint8_t mode, const char *work,
+                       const char *out)
 {
     const struct tsr_match_config config = {
-        .width = bench->width, .height = bench->height, .disparities = bench->disparities};
+        .width = bench->width, .height = bench->height, .disparities = bench->disparities, .mode = mode};
     struct tsr_gray left_view = tsr_match_pair_left(pair, &config);
     struct tsr_gray right_view = tsr_match_pair_right(pair, &config);
     place_view(left_view, left);
@@ -126,12 +129,19 @@ static void run_match(const struct workbench_case *bench, size_t pixels)
     do {
         status = tsr_match_run(&match, ROWS_PER_STEP);
     } while (status == TSR_AGAIN);
-    workbench_end("match", (size_t)tsr_match_rows_total(&match) * bench->width * bench->disparities);
+    workbench_end(work, (size_t)tsr_match_rows_total(&match) * bench->width * bench->disparities);
     workbench_expect(status == TSR_OK, "match");
-    workbench_store("match.out", map, pixels * sizeof *map);
+    workbench_store(out, map, pixels * sizeof *map);
+}
+
+static void run_match(const struct workbench_case *bench, size_t pixels)
+{
+    uint16_t *map = tsr_match_pair_map(pair);
+    match_pair(bench, pixels, TSR_MATCH_SAD, "match", "match.out");
     workbench_run_refinements(bench, map);
 
     struct tsr_median median;
+    enum tsr_status status;
     workbench_begin();
     status = tsr_median_start(&median, bench->width, bench->height, map, pixels, scratch, sizeof scratch);
     workbench_expect(status == TSR_OK, "median start");
@@ -141,6 +151,15 @@ static void run_match(const struct workbench_case *bench, size_t pixels)
     workbench_end("median", pixels);
     workbench_expect(status == TSR_OK, "median");
     workbench_store("median.out", map, pixels * sizeof *map);
+}
+
+static void run_other_modes(const struct workbench_case *bench, size_t pixels)
+{
+    match_pair(bench, pixels, TSR_MATCH_SAD8, "match_sad8", "match_sad8.out");
+    match_pair(bench, pixels, TSR_MATCH_CENSUS, "match_census", "match_census.out");
+    match_pair(bench, pixels, TSR_MATCH_SMOOTH, "match_smooth", "match_smooth.out");
+    match_pair(bench, pixels, TSR_MATCH_RAW, "match_raw", "match_raw.out");
+    match_pair(bench, pixels, TSR_MATCH_SSD, "match_ssd", "match_ssd.out");
 }
 
 /* The node charges a map's pixels once for quantising and once for comparing. */
@@ -197,5 +216,6 @@ void workbench_run(const struct workbench_case *bench)
     run_compare(bench, pixels);
     size_t coded_len = workbench_run_map(bench, tsr_match_pair_map(pair), coded, sizeof coded);
     workbench_run_seals(coded, coded_len);
+    run_other_modes(bench, pixels);
     workbench_store("work.txt", work_lines, work_lines_len);
 }
