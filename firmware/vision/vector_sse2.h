@@ -153,7 +153,7 @@ INLINE vec8 probe_index8(vec8 nibbles)
 INLINE vec8 probe4(uint8_t index)
 {
     static const _Alignas(16) uint64_t splats[16][2] = {
-#define SPLAT(n) {n * UINT64_C(0x0101010101010101), n * UINT64_C(0x0101010101010101)}
+#define SPLAT(n) {(n)*UINT64_C(0x0101010101010101), (n)*UINT64_C(0x0101010101010101)}
         SPLAT(0), SPLAT(1), SPLAT(2),  SPLAT(3),  SPLAT(4),  SPLAT(5),  SPLAT(6),  SPLAT(7),
         SPLAT(8), SPLAT(9), SPLAT(10), SPLAT(11), SPLAT(12), SPLAT(13), SPLAT(14), SPLAT(15),
 #undef SPLAT
