@@ -198,21 +198,28 @@ INLINE void find_bounds(struct winners *winners, unsigned from, unsigned percent
     }
 }
 
-INLINE void count_within(struct shape shape, int16_t *block, unsigned from, unsigned count, struct winners *winners)
+INLINE void count_of_pixel(struct shape shape, const int16_t *keys, size_t x, struct winners *winners)
 {
-    const int16_t *keys = keys_at(block, shape, 0);
-    for (size_t x = from; x < from + count; x++, keys += shape.vectors * VECTOR_LEN + KEY_PAD) {
-        vec16 bound = load_splat16(winners->bound + x);
-        vec8 within[VECTORS_MAX];
-        for (unsigned j = 0; j < shape.vectors; j++) {
-            vec16 first = above16(bound, load16(keys + j * VECTOR_LEN));
-            vec16 second = above16(bound, load16(keys + j * VECTOR_LEN + LANES16));
-            within[j] = join8(first, second);
-        }
-        const int16_t *own = keys + winners->d[x];
-        keep_count8(within, shape.vectors, winners->counts + x * KEPT_COUNTS);
-        winners->below[x] = own[-1];
-        winners->above[x] = own[1];
+    vec16 bound = load_splat16(winners->bound + x);
+    vec8 within[VECTORS_MAX];
+    for (unsigned j = 0; j < shape.vectors; j++) {
+        vec16 first = above16(bound, load16(keys + j * VECTOR_LEN));
+        vec16 second = above16(bound, load16(keys + j * VECTOR_LEN + LANES16));
+        within[j] = join8(first, second);
+    }
+    keep_count8(within, shape.vectors, winners->counts + x * KEPT_COUNTS);
+    const int16_t *own = keys + winners->d[x];
+    winners->below[x] = own[-1];
+    winners->above[x] = own[1];
+}
+
+/* A whole block: the counts of pixels behind the row's end are not used. */
+INLINE void count_within(struct shape shape, int16_t *block, unsigned from, struct winners *winners)
+{
+    for (size_t i = 0; i < BLOCK; i += 2) {
+        const int16_t *keys = keys_at(block, shape, (unsigned)i);
+        count_of_pixel(shape, keys, from + i, winners);
+        count_of_pixel(shape, keys + (shape.vectors * VECTOR_LEN + KEY_PAD), from + i + 1u, winners);
     }
 }
 
@@ -269,6 +276,7 @@ INLINE void find_winners(const struct row_input *input, struct shape shape, unsi
         vec8 column[VECTORS_MAX];
         move_column(input, shape, &at, column);
     }
+    memset(winners->kept + (size_t)input->width * KEPT_LANES, 0, BLOCK * KEPT_LANES * sizeof *winners->kept);
     struct held_keys held;
     int16_t *block = keys;
     int16_t *other = keys_at(keys, shape, BLOCK) - KEY_PAD;
@@ -285,9 +293,8 @@ INLINE void find_winners(const struct row_input *input, struct shape shape, unsi
             }
         }
         if (from > 0) { /* the block before: what it stored in pieces can be loaded in vectors by now */
-            unsigned left = input->width - (from - BLOCK);
             find_bounds(winners, from - BLOCK, percent);
-            count_within(shape, other, from - BLOCK, left < BLOCK ? left : BLOCK, winners);
+            count_within(shape, other, from - BLOCK, winners);
         }
         int16_t *swap = block;
         block = other;
