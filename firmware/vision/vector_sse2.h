@@ -9,6 +9,7 @@
  *   load_wide(at)                VECTOR_LEN / 2 bytes, widened
  *   narrow(low, high)            bytes again, saturated at 0 and 255
  *   splat8 splat16 reverse8; load_splat16(at) may read four bytes
+ *   gather16(table, index)       VECTOR_LEN / 2 elements
  *   add8 subtract8 add16 subtract16 multiply16 (low half) min16 max16
  *   and16 or16 xor16 SHIFT_...16
  *   multiply_high16(a, b)        the high half, of unsigned numbers
@@ -119,6 +120,18 @@ INLINE int load_word(const int16_t *at)
 INLINE vec16 load_splat16(const int16_t *at)
 {
     return _mm_shuffle_epi32(_mm_shufflelo_epi16(_mm_cvtsi32_si128(load_word(at)), 0), 0);
+}
+
+INLINE vec16 gather16(const uint16_t *table, const uint16_t *index)
+{
+    __m128i found = _mm_cvtsi32_si128(table[index[0]]);
+    found = _mm_insert_epi16(found, table[index[1]], 1);
+    found = _mm_insert_epi16(found, table[index[2]], 2);
+    found = _mm_insert_epi16(found, table[index[3]], 3);
+    found = _mm_insert_epi16(found, table[index[4]], 4);
+    found = _mm_insert_epi16(found, table[index[5]], 5);
+    found = _mm_insert_epi16(found, table[index[6]], 6);
+    return _mm_insert_epi16(found, table[index[7]], 7);
 }
 
 INLINE vec8 add8(vec8 a, vec8 b)
