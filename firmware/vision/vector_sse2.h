@@ -149,11 +149,12 @@ INLINE vec8 difference8(vec8 a, vec8 b)
     return _mm_sub_epi8(_mm_max_epu8(a, b), _mm_min_epu8(a, b));
 }
 
+/* Of two halves what is 0 less the count, modulo 256. */
 INLINE void keep_count8(const vec8 *masks, unsigned count, int16_t *kept)
 {
-    __m128i lanes = _mm_setzero_si128();
-    for (unsigned i = 0; i < count; i++) {
-        lanes = _mm_sub_epi8(lanes, masks[i]);
+    __m128i lanes = masks[0];
+    for (unsigned i = 1; i < count; i++) {
+        lanes = _mm_add_epi8(lanes, masks[i]);
     }
     _mm_store_si128((__m128i *)(void *)kept, _mm_sad_epu8(lanes, _mm_setzero_si128()));
 }
@@ -258,16 +259,15 @@ INLINE vec16 xor16(vec16 a, vec16 b)
 #define SHIFT_RIGHT16(a, n) _mm_srai_epi16(a, n)
 #define SHIFT_RIGHT_UNSIGNED16(a, n) _mm_srli_epi16(a, n)
 
-/* Each kept vector is two counts in eight bytes. */
 INLINE vec16 find_count8(const int16_t *kept)
 {
     __m128i pairs[4];
     for (unsigned i = 0; i < 4; i++) {
         pairs[i] = _mm_packs_epi32(load16(kept + i * 16u), load16(kept + i * 16u + 8u));
     }
-    __m128i low = _mm_madd_epi16(_mm_packs_epi32(pairs[0], pairs[1]), _mm_set1_epi16(1));
-    __m128i high = _mm_madd_epi16(_mm_packs_epi32(pairs[2], pairs[3]), _mm_set1_epi16(1));
-    return _mm_packs_epi32(low, high);
+    __m128i low = _mm_madd_epi16(_mm_packs_epi32(pairs[0], pairs[1]), _mm_set1_epi16(-1));
+    __m128i high = _mm_madd_epi16(_mm_packs_epi32(pairs[2], pairs[3]), _mm_set1_epi16(-1));
+    return _mm_and_si128(_mm_packs_epi32(low, high), _mm_set1_epi16(255));
 }
 
 INLINE vec16 zip_low16(vec16 a, vec16 b)
