@@ -3,10 +3,10 @@
  * with the operations of vector_sse2.h; a source file includes them first.
  *
  *     match_vector.h            what a row is made from; warm-up rows
- *     match_vector_sums.h       window sums and their least, in 16 bits
- *     match_vector_sums8.h      the same in 8, for TSR_MATCH_SAD8
+ *     match_vector_sums.h       window sums and their least
  *     match_vector_choose.h     tests, offset, and the row of the map
  *     match_vector_prefilter.h
+ *     match_vector_kernel.h     the three functions of a kernel
  *
  * A row of the right picture is copied with its ends repeated as far as any lane
  * of any pixel reaches, so that no lane is a special case: eq. (11).

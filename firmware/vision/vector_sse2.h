@@ -152,8 +152,8 @@ INLINE vec8 difference8(vec8 a, vec8 b)
 /* Of two halves what is 0 less the count, modulo 256. */
 INLINE void keep_count8(const vec8 *masks, unsigned count, int16_t *kept)
 {
-    __m128i lanes = masks[0];
-    for (unsigned i = 1; i < count; i++) {
+    __m128i lanes = _mm_setzero_si128();
+    for (unsigned i = 0; i < count; i++) {
         lanes = _mm_add_epi8(lanes, masks[i]);
     }
     _mm_store_si128((__m128i *)(void *)kept, _mm_sad_epu8(lanes, _mm_setzero_si128()));
