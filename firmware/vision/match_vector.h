@@ -3,10 +3,10 @@
  * with the operations of vector_sse2.h; a source file includes them first.
  *
  *     match_vector.h            what a row is made from; warm-up rows
- *     match_vector_sums.h       window sums and their least, in 16 bits
- *     match_vector_sums8.h      the same in 8, for TSR_MATCH_SAD8
+ *     match_vector_sums.h       window sums and their least
  *     match_vector_choose.h     tests, offset, and the row of the map
  *     match_vector_prefilter.h
+ *     match_vector_kernel.h     the three functions of a kernel
  *
  * A row of the right picture is copied with its ends repeated as far as any lane
  * of any pixel reaches, so that no lane is a special case: eq. (11).
@@ -90,12 +90,10 @@ static void clip_row(const uint8_t *row, unsigned width, int start, uint8_t *cli
 }
 
 /* One of the frame rows. */
-static void lay_out_row(const struct tsr_match *match, unsigned y, struct frame_rows *rows, unsigned which)
+static void lay_out_row(const struct tsr_match *match, unsigned y, uint8_t *left, uint8_t *right)
 {
     const struct tsr_match_config *config = &match->config;
     const uint8_t *right_row = match->right.pixels + (size_t)y * match->right.stride;
-    uint8_t *left = rows->left[which];
-    uint8_t *right = rows->right[which];
     memcpy(left, match->left.pixels + (size_t)y * match->left.stride, config->width);
     for (unsigned x = 0; x < config->width; x += VECTOR_LEN) {
         store8(left + x, probe_index8(load8(left + x)));
@@ -118,7 +116,7 @@ static void add_row(const struct tsr_match *match, unsigned y, unsigned times)
 {
     const struct tsr_match_config *config = &match->config;
     struct frame_rows rows;
-    lay_out_row(match, y, &rows, ENTERS);
+    lay_out_row(match, y, rows.left[ENTERS], rows.right[ENTERS]);
     unsigned step = has_pairs(config) ? 2u : 1u;
     uint8_t *column = columns_of(match);
     vec8 first = load8(column);

@@ -18,8 +18,8 @@ struct verdicts {
 
 struct choices {
     _Alignas(32) int16_t values[PIXELS_MAX]; /* what the map holds unless eq. (17) fails */
-    _Alignas(32) int16_t claims[PIXELS_MAX];
-    _Alignas(32) int16_t rights[PIXELS_MAX]; /* the right pixel */
+    uint16_t claims[PIXELS_MAX];             /* CLAIM_NONE where there is no d* */
+    uint16_t rights[PIXELS_MAX];             /* the right pixel, or any where there is no d* */
 };
 
 /* Column sums of |P_left - cap| moved down, padded with the ends repeated. */
@@ -93,6 +93,7 @@ static void choose(const struct tsr_match_config *config, const struct winners *
     vec16 one = splat16(1);
     static const _Alignas(32) int16_t counting[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     vec16 right = subtract16(load16(counting), splat16(config->search_start_px)); /* of d = 0 */
+    vec16 end = splat16((int16_t)(config->width - config->search_start_px));      /* of pixels; vectors may pass it */
     for (unsigned x = 0; x < config->width; x += LANES16) {
         vec16 d = load16(winners->d + x);
         vec16 found = load16(winners->sum + x);
@@ -107,57 +108,27 @@ static void choose(const struct tsr_match_config *config, const struct winners *
         vec16 own = subtract16(subtract16(one, above16(bound, below_key)), above16(bound, above_key));
         vec16 valid = unique_off ? splat16(-1) : equal16(find_count8(winners->counts + (size_t)x * KEPT_COUNTS), own);
         valid = and16(valid, load16(verdicts->textured + x));
-        valid = and16(valid, above16(found, splat16(-1)));
+        vec16 has_winner = and16(above16(found, splat16(-1)), above16(end, right));
+        valid = and16(valid, has_winner);
         store16(choices->values + x, or16(value, xor16(valid, splat16(-1))));
-        store16(choices->rights + x, subtract16(right, d));
-        right = add16(right, splat16(LANES16));
         vec16 level = whole_claims ? sum : SHIFT_RIGHT16(sum, 2);
-        store16(choices->claims + x, or16(SHIFT_LEFT16(level, 7), d));
+        vec16 claim = or16(SHIFT_LEFT16(level, 7), d);
+        store16_anywhere((int16_t *)choices->claims + x, or16(claim, xor16(has_winner, splat16(-1))));
+        store16_anywhere((int16_t *)choices->rights + x, and16(subtract16(right, d), has_winner));
+        right = add16(right, splat16(LANES16));
     }
 }
 
-/* The pixels that have a candidate: first .. end - 1. */
-struct searching {
-    unsigned first;
-    unsigned end;
-};
-
-static struct searching find_searching(const struct tsr_match_config *config)
+/* Of every right pixel the claim that holds: eq. (17). */
+static void hold_claims(const struct choices *choices, unsigned width, uint16_t *held)
 {
-    int end = config->width + config->search_start_px + config->disparities - 1;
-    struct searching searching = {config->search_start_px > 0 ? (unsigned)config->search_start_px : 0u,
-                                  end < config->width ? (unsigned)end : config->width};
-    return searching;
-}
-
-INLINE void claim_right(uint16_t *held, uint16_t claim)
-{
-    *held = claim < *held ? claim : *held;
-}
-
-/* Of every pixel the claim that holds of the right pixel it claims: eq. (17). */
-static void find_claims(const struct tsr_match_config *config, const uint16_t *rights, const uint16_t *claims,
-                        uint16_t *holding)
-{
-    uint16_t held[TSR_IMAGE_WIDTH_MAX];
-    memset(held, 0xff, config->width * sizeof *held);
-    struct searching searching = find_searching(config);
-    size_t x = searching.first;
-    for (; x + UNROLLED <= searching.end; x += UNROLLED) {
+    memset(held, 0xff, width * sizeof *held);
+    for (size_t x = 0; x < width; x += UNROLLED) {
         for (unsigned i = 0; i < UNROLLED; i++) {
-            claim_right(held + rights[x + i], claims[x + i]);
+            uint16_t right = choices->rights[x + i];
+            uint16_t claim = choices->claims[x + i];
+            held[right] = claim < held[right] ? claim : held[right];
         }
-    }
-    for (; x < searching.end; x++) {
-        claim_right(held + rights[x], claims[x]);
-    }
-    for (x = searching.first; x + UNROLLED <= searching.end; x += UNROLLED) {
-        for (unsigned i = 0; i < UNROLLED; i++) {
-            holding[x + i] = held[rights[x + i]];
-        }
-    }
-    for (; x < searching.end; x++) {
-        holding[x] = held[rights[x]];
     }
 }
 
@@ -165,11 +136,11 @@ static void write_row(const struct tsr_match *match, unsigned y, const struct wi
 {
     const struct tsr_match_config *config = &match->config;
     if (config->lr_tolerance_px != TSR_MATCH_TEST_OFF) {
-        _Alignas(32) int16_t holding[PIXELS_MAX];
-        find_claims(config, (const uint16_t *)choices->rights, (const uint16_t *)choices->claims, (uint16_t *)holding);
+        uint16_t held[TSR_IMAGE_WIDTH_MAX];
+        hold_claims(choices, config->width, held);
         vec16 tolerance = splat16(config->lr_tolerance_px);
         for (unsigned x = 0; x < config->width; x += LANES16) {
-            vec16 apart = subtract16(and16(load16(holding + x), splat16(127)), load16(winners->d + x));
+            vec16 apart = subtract16(and16(gather16(held, choices->rights + x), splat16(127)), load16(winners->d + x));
             apart = max16(apart, subtract16(splat16(0), apart));
             store16(choices->values + x, or16(load16(choices->values + x), above16(apart, tolerance)));
         }

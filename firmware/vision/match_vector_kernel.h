@@ -43,8 +43,8 @@ static void match_row(const struct tsr_match *match, unsigned y, unsigned y_new,
 {
     const struct tsr_match_config *config = &match->config;
     struct frame_rows rows;
-    lay_out_row(match, y_new, &rows, ENTERS);
-    lay_out_row(match, y_old, &rows, LEAVES);
+    lay_out_row(match, y_new, rows.left[ENTERS], rows.right[ENTERS]);
+    lay_out_row(match, y_old, rows.left[LEAVES], rows.right[LEAVES]);
     struct row_input input = {
         &rows, columns_of(match), config->width, config->disparities, config->window / 2u, config->search_start_px};
     struct winners winners;

@@ -1,8 +1,8 @@
 /*
  * Prefilter of the matcher, eq. (10), in vectors over x.
  *
- * Rows are copied to where whole vectors can be loaded. As in the portable one,
- * the unfiltered rows above wait in the room of the columns.
+ * As in the portable one, the unfiltered rows above wait in the room of the
+ * columns.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -11,22 +11,21 @@
 
 #include "match_vector.h"
 
+_Static_assert(LANES16 <= TSR_MATCH_DISPARITIES_MIN, "a row has a vector of pixels");
+
 /* sums[x + 1] = above + 2 row + below of column x; the columns at both ends are replicated. */
 static void add_vertically(const struct tsr_gray *frame, unsigned y, uint8_t *row_above, int16_t *sums)
 {
     unsigned width = frame->width;
-    const uint8_t *frame_row = frame->pixels + (size_t)y * frame->stride;
-    uint8_t above[PIXELS_MAX];
-    uint8_t row[PIXELS_MAX];
-    uint8_t below[PIXELS_MAX];
-    memcpy(row, frame_row, width);
-    memcpy(above, y > 0 ? row_above : row, width);
-    memcpy(below, y + 1u < frame->height ? frame_row + frame->stride : row, width);
-    memcpy(row_above, row, width);
-    for (unsigned x = 0; x < width; x += LANES16) {
+    const uint8_t *row = frame->pixels + (size_t)y * frame->stride;
+    const uint8_t *above = y > 0 ? row_above : row;
+    const uint8_t *below = y + 1u < frame->height ? row + frame->stride : row;
+    for (unsigned i = 0; i < width; i += LANES16) {
+        unsigned x = i + LANES16 <= width ? i : width - LANES16; /* the last vector ends with the row */
         vec16 twice = SHIFT_LEFT16(load_wide(row + x), 1);
         store16_anywhere(sums + 1u + x, add16(twice, add16(load_wide(above + x), load_wide(below + x))));
     }
+    memcpy(row_above, row, width);
     sums[0] = sums[1];
     sums[width + 1u] = sums[width];
 }

@@ -163,6 +163,7 @@ static void find_smooth_winners(struct smooth_row *row, unsigned percent, struct
     for (unsigned i = 0; i <= BLOCK; i++) {
         memset(keys_at(keys, row->shape, i) - KEY_PAD, 0, KEY_PAD * sizeof *keys);
     }
+    memset(winners->kept + (size_t)row->width * KEPT_LANES, 0, BLOCK * KEPT_LANES * sizeof *winners->kept);
     begin_smooth_row(row);
     for (unsigned from = 0; from < row->width; from += BLOCK) {
         unsigned left = row->width - from;
@@ -172,7 +173,7 @@ static void find_smooth_winners(struct smooth_row *row, unsigned percent, struct
             sum_paths(row, from + i, keys_at(keys, row->shape, i), winners->kept + (size_t)(from + i) * KEPT_LANES);
         }
         find_bounds(winners, from, percent);
-        count_within(row->shape, keys, from, count, winners);
+        count_within(row->shape, keys, from, winners);
     }
 }
 

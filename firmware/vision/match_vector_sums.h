@@ -198,61 +198,78 @@ INLINE void find_bounds(struct winners *winners, unsigned from, unsigned percent
     }
 }
 
-INLINE void count_within(struct shape shape, int16_t *block, unsigned from, unsigned count, struct winners *winners)
+INLINE void count_of_pixel(struct shape shape, const int16_t *keys, size_t x, struct winners *winners)
 {
-    const int16_t *keys = keys_at(block, shape, 0);
-    for (size_t x = from; x < from + count; x++, keys += shape.vectors * VECTOR_LEN + KEY_PAD) {
-        vec16 bound = load_splat16(winners->bound + x);
-        vec8 within[VECTORS_MAX];
-        for (unsigned j = 0; j < shape.vectors; j++) {
-            vec16 first = above16(bound, load16(keys + j * VECTOR_LEN));
-            vec16 second = above16(bound, load16(keys + j * VECTOR_LEN + LANES16));
-            within[j] = join8(first, second);
-        }
-        const int16_t *own = keys + winners->d[x];
-        keep_count8(within, shape.vectors, winners->counts + x * KEPT_COUNTS);
-        winners->below[x] = own[-1];
-        winners->above[x] = own[1];
+    vec16 bound = load_splat16(winners->bound + x);
+    vec8 within[VECTORS_MAX];
+    for (unsigned j = 0; j < shape.vectors; j++) {
+        vec16 first = above16(bound, load16(keys + j * VECTOR_LEN));
+        vec16 second = above16(bound, load16(keys + j * VECTOR_LEN + LANES16));
+        within[j] = join8(first, second);
+    }
+    keep_count8(within, shape.vectors, winners->counts + x * KEPT_COUNTS);
+    const int16_t *own = keys + winners->d[x];
+    winners->below[x] = own[-1];
+    winners->above[x] = own[1];
+}
+
+/* A whole block: the counts of pixels behind the row's end are not used. */
+INLINE void count_within(struct shape shape, int16_t *block, unsigned from, struct winners *winners)
+{
+    for (size_t i = 0; i < BLOCK; i += 2) {
+        const int16_t *keys = keys_at(block, shape, (unsigned)i);
+        count_of_pixel(shape, keys, from + i, winners);
+        count_of_pixel(shape, keys + (shape.vectors * VECTOR_LEN + KEY_PAD), from + i + 1u, winners);
     }
 }
 
-/* Whether no pixel of the block toggles a lane, has no column to enter or keeps one that is to leave. */
-INLINE bool is_plain(const struct row_input *input, unsigned from)
+/* What is particular about the pixels of a block: constants where it is used, so that most are without. */
+struct border {
+    bool starts; /* lanes are toggled, or columns that are to leave are kept */
+    bool ends;   /* the last column enters again */
+};
+
+INLINE struct border border_of(const struct row_input *input, unsigned from)
 {
     int lane = (int)from - input->start;
-    int width = (int)input->width;
-    bool toggles = lane + (int)BLOCK > 0 && lane < (int)input->disparities;
-    return !toggles && lane + (int)BLOCK <= width && from > input->radius &&
-           from + BLOCK + input->radius <= input->width;
+    bool toggles = (lane + (int)BLOCK > 0 && lane < (int)input->disparities) || lane + (int)BLOCK > (int)input->width;
+    struct border border = {toggles || from <= input->radius, from + BLOCK + input->radius > input->width};
+    return border;
 }
 
-/* The keys and the least of them of up to BLOCK pixels. */
-INLINE void slide_block(const struct row_input *input, struct shape shape, bool plain, struct cursor *at,
-                        struct held_keys *held, unsigned from, unsigned count, const int16_t *before, int16_t *keys,
-                        struct winners *winners)
+/* The keys and the least of them of one pixel. */
+INLINE void slide_pixel(const struct row_input *input, struct shape shape, struct border border, struct cursor *at,
+                        struct held_keys *held, size_t x, const int16_t *before, int16_t *keys, struct winners *winners)
 {
     _Alignas(32) int16_t changed[TSR_DISPARITY_COUNT_MAX];
-    unsigned entering = input->width - input->radius;
-    for (size_t i = 0; i < count; i++) {
-        unsigned x = from + (unsigned)i;
-        vec8 column[VECTORS_MAX];
-        if (plain || x < entering) {
-            move_column(input, shape, at, column);
-        } else {
-            repeat_column(input, shape, at, column);
+    vec8 column[VECTORS_MAX];
+    if (border.ends && x + input->radius >= input->width) {
+        repeat_column(input, shape, at, column);
+    } else {
+        move_column(input, shape, at, column);
+    }
+    if (border.starts) {
+        int lane = (int)x - input->start;
+        lane -= lane >= (int)input->width ? (int)input->width : 0;
+        if (lane >= 0 && lane < (int)input->disparities) {
+            before = toggle_lane(shape, (unsigned)lane, held, before, changed);
         }
-        if (!plain) {
-            int lane = (int)x - input->start;
-            lane -= lane >= (int)input->width ? (int)input->width : 0;
-            if (lane >= 0 && lane < (int)input->disparities) {
-                before = toggle_lane(shape, (unsigned)lane, held, before, changed);
-            }
-        }
-        vec16 least = slide_window(input, shape, column, at->leave, held, before, keys);
-        keep_least16(least, winners->kept + (from + i) * KEPT_LANES);
-        at->leave += plain || x > input->radius ? input->disparities : 0u;
+    }
+    vec16 least = slide_window(input, shape, column, at->leave, held, before, keys);
+    keep_least16(least, winners->kept + x * KEPT_LANES);
+    at->leave += border.starts && x <= input->radius ? 0u : input->disparities;
+}
+
+/* Of a block, or of what the row has of it. */
+INLINE void slide_block(const struct row_input *input, struct shape shape, struct border border, struct cursor *at,
+                        struct held_keys *held, size_t from, const int16_t *before, int16_t *keys,
+                        struct winners *winners)
+{
+    unsigned stride = shape.vectors * VECTOR_LEN + KEY_PAD;
+    size_t end = border.ends && from + BLOCK > input->width ? input->width : from + BLOCK;
+    for (size_t x = from; x < end; x++, keys += stride) {
+        slide_pixel(input, shape, border, at, held, x, before, keys, winners);
         before = keys;
-        keys += shape.vectors * VECTOR_LEN + KEY_PAD;
     }
 }
 
@@ -269,25 +286,27 @@ INLINE void find_winners(const struct row_input *input, struct shape shape, unsi
         vec8 column[VECTORS_MAX];
         move_column(input, shape, &at, column);
     }
+    memset(winners->kept + (size_t)input->width * KEPT_LANES, 0, BLOCK * KEPT_LANES * sizeof *winners->kept);
     struct held_keys held;
     int16_t *block = keys;
     int16_t *other = keys_at(keys, shape, BLOCK) - KEY_PAD;
     begin_keys(input, shape, &held, keys_at(other, shape, BLOCK - 1u));
     for (unsigned from = 0; from < input->width + BLOCK; from += BLOCK) {
         if (from < input->width) {
-            unsigned left = input->width - from;
             const int16_t *before = keys_at(other, shape, BLOCK - 1u);
             int16_t *first = keys_at(block, shape, 0);
-            if (is_plain(input, from)) {
-                slide_block(input, shape, true, &at, &held, from, BLOCK, before, first, winners);
+            struct border border = border_of(input, from);
+            if (!border.starts && !border.ends) {
+                slide_block(input, shape, (struct border){false, false}, &at, &held, from, before, first, winners);
+            } else if (!border.ends) {
+                slide_block(input, shape, (struct border){true, false}, &at, &held, from, before, first, winners);
             } else {
-                slide_block(input, shape, false, &at, &held, from, left < BLOCK ? left : BLOCK, before, first, winners);
+                slide_block(input, shape, (struct border){true, true}, &at, &held, from, before, first, winners);
             }
         }
         if (from > 0) { /* the block before: what it stored in pieces can be loaded in vectors by now */
-            unsigned left = input->width - (from - BLOCK);
             find_bounds(winners, from - BLOCK, percent);
-            count_within(shape, other, from - BLOCK, left < BLOCK ? left : BLOCK, winners);
+            count_within(shape, other, from - BLOCK, winners);
         }
         int16_t *swap = block;
         block = other;

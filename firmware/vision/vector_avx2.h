@@ -85,6 +85,23 @@ INLINE vec16 load_splat16(const int16_t *at)
     return _mm256_set1_epi16(*at);
 }
 
+INLINE __m128i gather_half(const uint16_t *table, const uint16_t *index)
+{
+    __m128i found = _mm_cvtsi32_si128(table[index[0]]);
+    found = _mm_insert_epi16(found, table[index[1]], 1);
+    found = _mm_insert_epi16(found, table[index[2]], 2);
+    found = _mm_insert_epi16(found, table[index[3]], 3);
+    found = _mm_insert_epi16(found, table[index[4]], 4);
+    found = _mm_insert_epi16(found, table[index[5]], 5);
+    found = _mm_insert_epi16(found, table[index[6]], 6);
+    return _mm_insert_epi16(found, table[index[7]], 7);
+}
+
+INLINE vec16 gather16(const uint16_t *table, const uint16_t *index)
+{
+    return _mm256_set_m128i(gather_half(table, index + 8), gather_half(table, index));
+}
+
 INLINE vec8 add8(vec8 a, vec8 b)
 {
     return _mm256_add_epi8(a, b);

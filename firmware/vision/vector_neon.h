@@ -82,6 +82,18 @@ INLINE vec16 load_splat16(const int16_t *at)
     return vld1q_dup_s16(at);
 }
 
+INLINE vec16 gather16(const uint16_t *table, const uint16_t *index)
+{
+    uint16x8_t found = vdupq_n_u16(table[index[0]]);
+    found = vld1q_lane_u16(table + index[1], found, 1);
+    found = vld1q_lane_u16(table + index[2], found, 2);
+    found = vld1q_lane_u16(table + index[3], found, 3);
+    found = vld1q_lane_u16(table + index[4], found, 4);
+    found = vld1q_lane_u16(table + index[5], found, 5);
+    found = vld1q_lane_u16(table + index[6], found, 6);
+    return vreinterpretq_s16_u16(vld1q_lane_u16(table + index[7], found, 7));
+}
+
 INLINE vec8 add8(vec8 a, vec8 b)
 {
     return vaddq_u8(a, b);

@@ -9,6 +9,7 @@
  *   load_wide(at)                VECTOR_LEN / 2 bytes, widened
  *   narrow(low, high)            bytes again, saturated at 0 and 255
  *   splat8 splat16 reverse8; load_splat16(at) may read four bytes
+ *   gather16(table, index)       VECTOR_LEN / 2 elements
  *   add8 subtract8 add16 subtract16 multiply16 (low half) min16 max16
  *   and16 or16 xor16 SHIFT_...16
  *   multiply_high16(a, b)        the high half, of unsigned numbers
@@ -129,6 +130,18 @@ INLINE vec16 load_splat16(const int16_t *at)
     return _mm_shuffle_epi32(_mm_shufflelo_epi16(_mm_cvtsi32_si128(load_word(at)), 0), 0);
 }
 
+INLINE vec16 gather16(const uint16_t *table, const uint16_t *index)
+{
+    __m128i found = _mm_cvtsi32_si128(table[index[0]]);
+    found = _mm_insert_epi16(found, table[index[1]], 1);
+    found = _mm_insert_epi16(found, table[index[2]], 2);
+    found = _mm_insert_epi16(found, table[index[3]], 3);
+    found = _mm_insert_epi16(found, table[index[4]], 4);
+    found = _mm_insert_epi16(found, table[index[5]], 5);
+    found = _mm_insert_epi16(found, table[index[6]], 6);
+    return _mm_insert_epi16(found, table[index[7]], 7);
+}
+
 INLINE vec8 add8(vec8 a, vec8 b)
 {
     return _mm_add_epi8(a, b);
@@ -202,11 +215,12 @@ INLINE uint8_t first_byte8(vec8 a)
     return (uint8_t)_mm_cvtsi128_si32(a);
 }
 
+/* Of two halves what is 0 less the count, modulo 256. */
 INLINE void keep_count8(const vec8 *masks, unsigned count, int16_t *kept)
 {
     __m128i lanes = _mm_setzero_si128();
     for (unsigned i = 0; i < count; i++) {
-        lanes = _mm_sub_epi8(lanes, masks[i]);
+        lanes = _mm_add_epi8(lanes, masks[i]);
     }
     _mm_store_si128((__m128i *)(void *)kept, _mm_sad_epu8(lanes, _mm_setzero_si128()));
 }
@@ -219,7 +233,7 @@ INLINE vec8 probe_index8(vec8 nibbles)
 INLINE vec8 probe4(uint8_t index)
 {
     static const _Alignas(16) uint64_t splats[16][2] = {
-#define SPLAT(n) {n * UINT64_C(0x0101010101010101), n * UINT64_C(0x0101010101010101)}
+#define SPLAT(n) {(n)*UINT64_C(0x0101010101010101), (n)*UINT64_C(0x0101010101010101)}
         SPLAT(0), SPLAT(1), SPLAT(2),  SPLAT(3),  SPLAT(4),  SPLAT(5),  SPLAT(6),  SPLAT(7),
         SPLAT(8), SPLAT(9), SPLAT(10), SPLAT(11), SPLAT(12), SPLAT(13), SPLAT(14), SPLAT(15),
 #undef SPLAT
@@ -311,16 +325,15 @@ INLINE vec16 xor16(vec16 a, vec16 b)
 #define SHIFT_RIGHT16(a, n) _mm_srai_epi16(a, n)
 #define SHIFT_RIGHT_UNSIGNED16(a, n) _mm_srli_epi16(a, n)
 
-/* Each kept vector is two counts in eight bytes. */
 INLINE vec16 find_count8(const int16_t *kept)
 {
     __m128i pairs[4];
     for (unsigned i = 0; i < 4; i++) {
         pairs[i] = _mm_packs_epi32(load16(kept + i * 16u), load16(kept + i * 16u + 8u));
     }
-    __m128i low = _mm_madd_epi16(_mm_packs_epi32(pairs[0], pairs[1]), _mm_set1_epi16(1));
-    __m128i high = _mm_madd_epi16(_mm_packs_epi32(pairs[2], pairs[3]), _mm_set1_epi16(1));
-    return _mm_packs_epi32(low, high);
+    __m128i low = _mm_madd_epi16(_mm_packs_epi32(pairs[0], pairs[1]), _mm_set1_epi16(-1));
+    __m128i high = _mm_madd_epi16(_mm_packs_epi32(pairs[2], pairs[3]), _mm_set1_epi16(-1));
+    return _mm_and_si128(_mm_packs_epi32(low, high), _mm_set1_epi16(255));
 }
 
 INLINE vec16 zip_low16(vec16 a, vec16 b)
