@@ -97,9 +97,9 @@ static struct work decode_view(struct tsr_node *node)
 static void start_matching(struct tsr_node *node)
 {
     const struct tsr_match_config *config = &node->config.match;
-    (void)tsr_match_start(&node->work.match, config, tsr_match_pair_left(node->pair, config),
-                          tsr_match_pair_right(node->pair, config), tsr_match_pair_map(node->pair),
-                          (size_t)config->width * config->height, node->scratch, node->scratch_cap);
+    (void)tsr_match_start_sad(&node->work.match, config, tsr_match_pair_left(node->pair, config),
+                              tsr_match_pair_right(node->pair, config), tsr_match_pair_map(node->pair),
+                              (size_t)config->width * config->height, node->scratch, node->scratch_cap);
     node->disparities = node->work.match.config.disparities;
     enter(node, TSR_PHASE_MATCHING);
 }

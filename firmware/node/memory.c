@@ -75,6 +75,9 @@ static const char *bad_camera_field(const struct tsr_node_config *config)
         tsr_similarity_check(&config->similarity, &field) != TSR_OK) {
         return field;
     }
+    if (config->match.mode > TSR_MATCH_SAD8) { /* what tsr_match_start_sad() takes */
+        return "mode";
+    }
     if (config->change.width != config->match.width || config->similarity.width != config->match.width) {
         return "width";
     }

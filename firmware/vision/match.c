@@ -1,6 +1,8 @@
 /*
  * The matcher's configuration, buffers and order of rows.
  *
+ * Of the SAD modes:
+ *
  *   rows_done   0 .. H - 1        prefilter row rows_done
  *               H .. H + r - 1    warm-up: column sums one row above the image
  *               H + r .. 2H + r   map rows 0 .. H - 1
@@ -233,9 +235,10 @@ static bool has_shape(const struct tsr_gray *frame, const struct tsr_match_confi
     return frame->width == config->width && frame->height == config->height && frame->stride >= config->width;
 }
 
-enum tsr_status tsr_match_start(struct tsr_match *match, const struct tsr_match_config *config, struct tsr_gray left,
-                                struct tsr_gray right, uint16_t *map, size_t map_cap, uint8_t *scratch,
-                                size_t scratch_cap)
+/* As tsr_match_start(), by the method of the mode. */
+static enum tsr_status start(struct tsr_match *match, const struct tsr_match_config *config, struct tsr_gray left,
+                             struct tsr_gray right, uint16_t *map, size_t map_cap, uint8_t *scratch, size_t scratch_cap,
+                             const struct tsr_match_method *method)
 {
     if (match == NULL || left.pixels == NULL || right.pixels == NULL || map == NULL || scratch == NULL ||
         tsr_match_check(config, NULL) != TSR_OK || (uintptr_t)map % sizeof(uint16_t) != 0 ||
@@ -254,7 +257,7 @@ enum tsr_status tsr_match_start(struct tsr_match *match, const struct tsr_match_
     }
     bool covered = resolved.search_start_px >= 0 || resolved.kernel->any_start;
     const struct tsr_match_kernel *kernel = covered ? resolved.kernel : &tsr_match_kernel_portable;
-    *match = (struct tsr_match){resolved, left, right, map, scratch, kernel, 0};
+    *match = (struct tsr_match){resolved, left, right, map, scratch, kernel, method, 0};
     return TSR_OK;
 }
 
@@ -274,27 +277,57 @@ static void match_row(const struct tsr_match *match, unsigned y, unsigned radius
     match->kernel->match_row(match, y, enter, leave);
 }
 
+static unsigned rows_total(const struct tsr_match_config *config)
+{
+    return 2u * config->height + config->window / 2u;
+}
+
+static void step(const struct tsr_match *match, unsigned row)
+{
+    unsigned height = match->config.height;
+    unsigned radius = match->config.window / 2u;
+    if (row < height) {
+        match->kernel->prefilter_row(match, row);
+    } else if (row < height + radius) {
+        warm_up(match, row - height, radius);
+    } else {
+        match_row(match, row - height - radius, radius);
+    }
+}
+
+static const struct tsr_match_method method_sad = {rows_total, step};
+
+enum tsr_status tsr_match_start_sad(struct tsr_match *match, const struct tsr_match_config *config,
+                                    struct tsr_gray left, struct tsr_gray right, uint16_t *map, size_t map_cap,
+                                    uint8_t *scratch, size_t scratch_cap)
+{
+    if (config != NULL && config->mode > TSR_MATCH_SAD8) {
+        return TSR_ERR_ARG;
+    }
+    return start(match, config, left, right, map, map_cap, scratch, scratch_cap, &method_sad);
+}
+
+enum tsr_status tsr_match_start(struct tsr_match *match, const struct tsr_match_config *config, struct tsr_gray left,
+                                struct tsr_gray right, uint16_t *map, size_t map_cap, uint8_t *scratch,
+                                size_t scratch_cap)
+{
+    const struct tsr_match_method *method = &method_sad;
+    if (config != NULL && is_census(config)) {
+        method = &tsr_match_method_census;
+    } else if (config != NULL && tsr_match_is_plain(config->mode)) {
+        method = &tsr_match_method_plain;
+    }
+    return start(match, config, left, right, map, map_cap, scratch, scratch_cap, method);
+}
+
 enum tsr_status tsr_match_run(struct tsr_match *match, uint16_t rows)
 {
     if (match == NULL || rows == 0) {
         return TSR_ERR_ARG;
     }
-    unsigned height = match->config.height;
-    unsigned radius = match->config.window / 2u;
-    uint16_t total = tsr_match_rows_total(match);
+    unsigned total = match->method->rows_total(&match->config);
     for (; rows > 0 && match->rows_done < total; rows--, match->rows_done++) {
-        unsigned row = match->rows_done;
-        if (is_census(&match->config)) {
-            tsr_match_census_step(match, row);
-        } else if (tsr_match_is_plain(match->config.mode)) {
-            tsr_match_plain_step(match, row);
-        } else if (row < height) {
-            match->kernel->prefilter_row(match, row);
-        } else if (row < height + radius) {
-            warm_up(match, row - height, radius);
-        } else {
-            match_row(match, row - height - radius, radius);
-        }
+        match->method->step(match, match->rows_done);
     }
     return match->rows_done < total ? TSR_AGAIN : TSR_OK;
 }
@@ -306,11 +339,5 @@ uint16_t tsr_match_rows_done(const struct tsr_match *match)
 
 uint16_t tsr_match_rows_total(const struct tsr_match *match)
 {
-    if (is_census(&match->config)) {
-        return (uint16_t)tsr_match_census_rows_total(&match->config);
-    }
-    if (tsr_match_is_plain(match->config.mode)) {
-        return (uint16_t)tsr_match_plain_rows_total(&match->config);
-    }
-    return (uint16_t)(2u * match->config.height + match->config.window / 2u);
+    return (uint16_t)match->method->rows_total(&match->config);
 }

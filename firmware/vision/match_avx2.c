@@ -23,13 +23,11 @@ const struct tsr_match_kernel tsr_match_kernel_avx2 = {
     .prefilter_row = prefilter_row,
     .add_row = warm_up_row,
     .match_row = match_row,
-    .describe_row = describe_row,
-    .add_census = add_census,
-    .census_row = census_row,
-    .cost_row = cost_row,
-    .smooth_row = smooth_row,
     .any_start = true,
 };
+
+const struct tsr_match_census_kernel tsr_match_census_avx2 = {describe_row, add_census, census_row, cost_row,
+                                                              smooth_row};
 
 #ifdef __clang__
 #pragma clang attribute pop

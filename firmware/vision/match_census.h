@@ -58,11 +58,24 @@ struct tsr_match_paths {
 /* Bytes of columns and what follows them, and of what is behind the common scratch, of a resolved configuration. */
 size_t tsr_match_census_columns_len(const struct tsr_match_config *config);
 size_t tsr_match_census_planes_len(const struct tsr_match_config *config);
-unsigned tsr_match_census_rows_total(const struct tsr_match_config *config);
 unsigned tsr_match_census_radius(const struct tsr_match_config *config);
 
-/* One row of work: 0 .. rows_total - 1, in this order. */
-void tsr_match_census_step(const struct tsr_match *match, unsigned step);
+/* What a kernel does in the census modes. */
+struct tsr_match_census_kernel {
+    /* Descriptors of frame row y into their place, eq. (40). */
+    void (*describe_row)(const struct tsr_match *match, unsigned y);
+    /* census: as add_row and match_row of struct tsr_match_kernel, with C of rows that are described: eqs. (41), (47).
+     */
+    void (*add_census)(const struct tsr_match *match, unsigned y, unsigned times);
+    void (*census_row)(const struct tsr_match *match, unsigned y, unsigned y_new, unsigned y_old);
+    /* smooth: costs of the row y that was described last, eq. (41), and row y of the map from those of rows y - 1 ..
+     * y + 1 and the paths, eqs. (42) to (46). Rows in ascending order. */
+    void (*cost_row)(const struct tsr_match *match, unsigned y);
+    void (*smooth_row)(const struct tsr_match *match, unsigned y);
+};
+
+/* That of the match's kernel; the portable one where it has none. */
+const struct tsr_match_census_kernel *tsr_match_census_kernel_of(const struct tsr_match *match);
 
 struct tsr_match_planes tsr_match_planes_at(const struct tsr_match *match, unsigned y);
 struct tsr_match_paths tsr_match_share_paths(const struct tsr_match *match);

@@ -17,7 +17,7 @@ unsigned tsr_match_census_radius(const struct tsr_match_config *config)
     return has_paths(config) ? 1u : config->window / 2u;
 }
 
-unsigned tsr_match_census_rows_total(const struct tsr_match_config *config)
+static unsigned rows_total(const struct tsr_match_config *config)
 {
     return config->height + tsr_match_census_radius(config);
 }
@@ -89,15 +89,16 @@ static void begin_paths(const struct tsr_match *match)
 
 static void step_smooth(const struct tsr_match *match, unsigned step)
 {
+    const struct tsr_match_census_kernel *kernel = tsr_match_census_kernel_of(match);
     if (step == 0) {
         begin_paths(match);
     }
     if (step < match->config.height) {
-        match->kernel->describe_row(match, step);
-        match->kernel->cost_row(match, step);
+        kernel->describe_row(match, step);
+        kernel->cost_row(match, step);
     }
     if (step > 0) {
-        match->kernel->smooth_row(match, step - 1u);
+        kernel->smooth_row(match, step - 1u);
     }
 }
 
@@ -105,11 +106,12 @@ static void step_smooth(const struct tsr_match *match, unsigned step)
  * once, so that moving them down to map row 0 is a step like every other. */
 static void warm_up(const struct tsr_match *match, unsigned row, unsigned radius)
 {
+    const struct tsr_match_census_kernel *kernel = tsr_match_census_kernel_of(match);
     if (row == 0) {
         memset(tsr_match_share_scratch(match).columns, 0, (size_t)match->config.width * match->config.disparities);
     }
-    match->kernel->describe_row(match, row);
-    match->kernel->add_census(match, row, row == 0 ? radius + 2u : 1u);
+    kernel->describe_row(match, row);
+    kernel->add_census(match, row, row == 0 ? radius + 2u : 1u);
 }
 
 static void step_census(const struct tsr_match *match, unsigned step)
@@ -120,18 +122,21 @@ static void step_census(const struct tsr_match *match, unsigned step)
         warm_up(match, step, radius);
         return;
     }
+    const struct tsr_match_census_kernel *kernel = tsr_match_census_kernel_of(match);
     unsigned y = step - radius;
     if (y + radius <= last) {
-        match->kernel->describe_row(match, y + radius);
+        kernel->describe_row(match, y + radius);
     }
-    match->kernel->census_row(match, y, y + radius < last ? y + radius : last, y > radius ? y - radius - 1u : 0u);
+    kernel->census_row(match, y, y + radius < last ? y + radius : last, y > radius ? y - radius - 1u : 0u);
 }
 
-void tsr_match_census_step(const struct tsr_match *match, unsigned step)
+static void step(const struct tsr_match *match, unsigned row)
 {
     if (has_paths(&match->config)) {
-        step_smooth(match, step);
+        step_smooth(match, row);
     } else {
-        step_census(match, step);
+        step_census(match, row);
     }
 }
+
+const struct tsr_match_method tsr_match_method_census = {rows_total, step};

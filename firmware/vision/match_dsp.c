@@ -277,6 +277,5 @@ const struct tsr_match_kernel tsr_match_kernel_dsp = {
     .prefilter_row = tsr_dsp_prefilter_row,
     .add_row = tsr_dsp_add_row,
     .match_row = match_row,
-    TSR_MATCH_DSP_CENSUS,
 };
 #endif

@@ -171,13 +171,6 @@ struct tsr_dsp_walk {
 uint32_t tsr_dsp_walk(const struct tsr_dsp_walk *walk);
 uint64_t tsr_dsp_walk_last(const struct tsr_dsp_walk *walk, const uint32_t *first, const uint32_t *second);
 
-void tsr_dsp_describe_row(const struct tsr_match *match, unsigned y);
-void tsr_dsp_add_census(const struct tsr_match *match, unsigned y, unsigned times);
-void tsr_dsp_census_row(const struct tsr_match *match, unsigned y, unsigned y_new, unsigned y_old);
-void tsr_dsp_cost_row(const struct tsr_match *match, unsigned y);
 void tsr_dsp_smooth_row(const struct tsr_match *match, unsigned y);
-#define TSR_MATCH_DSP_CENSUS                                                                                           \
-    .describe_row = tsr_dsp_describe_row, .add_census = tsr_dsp_add_census, .census_row = tsr_dsp_census_row,          \
-    .cost_row = tsr_dsp_cost_row, .smooth_row = tsr_dsp_smooth_row
 
 #endif

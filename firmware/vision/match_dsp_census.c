@@ -117,7 +117,7 @@ static void describe_right(const struct tsr_match *match, unsigned y, const stru
     }
 }
 
-void tsr_dsp_describe_row(const struct tsr_match *match, unsigned y)
+static void describe_row(const struct tsr_match *match, unsigned y)
 {
     struct tsr_match_planes planes = tsr_match_planes_at(match, y);
     describe_left(match, y, &planes);
@@ -169,7 +169,7 @@ static inline uint32_t cost_of(const struct masks *masks, const struct lanes *la
                       lanes->left[1] ^ tsr_dsp_load(lanes->right[1] + d));
 }
 
-void tsr_dsp_cost_row(const struct tsr_match *match, unsigned y)
+static void cost_row(const struct tsr_match *match, unsigned y)
 {
     unsigned width = match->config.width;
     unsigned disparities = match->config.disparities;
@@ -185,7 +185,7 @@ void tsr_dsp_cost_row(const struct tsr_match *match, unsigned y)
     }
 }
 
-void tsr_dsp_add_census(const struct tsr_match *match, unsigned y, unsigned times)
+static void add_census(const struct tsr_match *match, unsigned y, unsigned times)
 {
     unsigned width = match->config.width;
     unsigned disparities = match->config.disparities;
@@ -219,9 +219,12 @@ static void move_columns(const struct tsr_match *match, unsigned y_new, unsigned
     }
 }
 
-void tsr_dsp_census_row(const struct tsr_match *match, unsigned y, unsigned y_new, unsigned y_old)
+static void census_row(const struct tsr_match *match, unsigned y, unsigned y_new, unsigned y_old)
 {
     move_columns(match, y_new, y_old);
     tsr_match_finish_row(match, y);
 }
+
+const struct tsr_match_census_kernel tsr_match_census_dsp = {describe_row, add_census, census_row, cost_row,
+                                                             tsr_dsp_smooth_row};
 #endif

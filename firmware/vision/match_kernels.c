@@ -17,7 +17,6 @@ const struct tsr_match_kernel tsr_match_kernel_portable = {
     .add_row = tsr_match_add_row,
     .match_row = move_and_finish,
     .any_start = true,
-    TSR_MATCH_PORTABLE_CENSUS,
 };
 
 #if defined(TSR_MATCH_HAS_X86)

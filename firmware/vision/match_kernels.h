@@ -10,11 +10,6 @@
 
 #include "match_census.h"
 
-/* What a kernel without its own code for the census modes has in its table. */
-#define TSR_MATCH_PORTABLE_CENSUS                                                                                      \
-    .describe_row = tsr_match_describe_row, .add_census = tsr_match_add_census, .census_row = tsr_match_census_row,    \
-    .cost_row = tsr_match_cost_row, .smooth_row = tsr_match_smooth_row
-
 /* Cortex-M55, M85: MVE with integers, and the low-overhead loops that come with it in Armv8.1-M. */
 #if defined(__ARM_FEATURE_MVE)
 #define TSR_MATCH_HAS_MVE
@@ -25,6 +20,7 @@ extern const struct tsr_match_kernel tsr_match_kernel_mve;
 #if defined(__ARM_FEATURE_SIMD32) && defined(__thumb2__) && !defined(__ARM_ARCH_7A__)
 #define TSR_MATCH_HAS_DSP
 extern const struct tsr_match_kernel tsr_match_kernel_dsp;
+extern const struct tsr_match_census_kernel tsr_match_census_dsp;
 #endif
 
 /* SSE2 belongs to x86-64 (AMD64 ABI); AVX2 is asked for when the program runs. */
@@ -32,12 +28,15 @@ extern const struct tsr_match_kernel tsr_match_kernel_dsp;
 #define TSR_MATCH_HAS_X86
 extern const struct tsr_match_kernel tsr_match_kernel_sse2;
 extern const struct tsr_match_kernel tsr_match_kernel_avx2;
+extern const struct tsr_match_census_kernel tsr_match_census_sse2;
+extern const struct tsr_match_census_kernel tsr_match_census_avx2;
 #endif
 
 /* Advanced SIMD belongs to AArch64 (Arm ARM, A1.5). */
 #if defined(__aarch64__)
 #define TSR_MATCH_HAS_NEON
 extern const struct tsr_match_kernel tsr_match_kernel_neon;
+extern const struct tsr_match_census_kernel tsr_match_census_neon;
 #endif
 
 #endif

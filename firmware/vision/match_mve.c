@@ -12,7 +12,6 @@
  *
  * SPDX-License-Identifier: Apache-2.0
  */
-#include "match_dsp.h"
 #include "match_kernels.h"
 
 #ifdef TSR_MATCH_HAS_MVE
@@ -317,6 +316,5 @@ const struct tsr_match_kernel tsr_match_kernel_mve = {
     .prefilter_row = tsr_mve_prefilter_row,
     .add_row = tsr_mve_add_row,
     .match_row = match_row,
-    TSR_MATCH_DSP_CENSUS,
 };
 #endif

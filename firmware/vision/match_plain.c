@@ -64,26 +64,26 @@ static void finish_row(const struct tsr_match *match, unsigned y)
     tsr_match_write_row(match, y);
 }
 
-unsigned tsr_match_plain_rows_total(const struct tsr_match_config *config)
+static unsigned rows_total(const struct tsr_match_config *config)
 {
     return config->height + config->window / 2u;
 }
 
-void tsr_match_plain_step(const struct tsr_match *match, unsigned step)
+static void step(const struct tsr_match *match, unsigned row)
 {
     const struct tsr_match_plain_sums *plain =
         match->config.mode == TSR_MATCH_RAW ? &tsr_match_raw_sums : &tsr_match_ssd_sums;
     unsigned radius = match->config.window / 2u;
     unsigned last = match->config.height - 1u;
-    if (step < radius) { /* row 0 r + 2 times, rows 1 .. r - 1 once, as in a window */
-        if (step == 0) {
+    if (row < radius) { /* row 0 r + 2 times, rows 1 .. r - 1 once, as in a window */
+        if (row == 0) {
             memset(tsr_match_share_scratch(match).columns, 0, columns_alone_len(&match->config));
         }
-        tsr_match_mirror_row(match, step, 0);
-        plain->add_row(match, step, step == 0 ? radius + 2u : 1u);
+        tsr_match_mirror_row(match, row, 0);
+        plain->add_row(match, row, row == 0 ? radius + 2u : 1u);
         return;
     }
-    unsigned y = step - radius;
+    unsigned y = row - radius;
     unsigned y_new = y + radius < last ? y + radius : last;
     unsigned y_old = y > radius ? y - radius - 1u : 0u;
     tsr_match_mirror_row(match, y_new, 0);
@@ -92,3 +92,5 @@ void tsr_match_plain_step(const struct tsr_match *match, unsigned step)
     plain->choose_row(match, y_new, y_old);
     finish_row(match, y);
 }
+
+const struct tsr_match_method tsr_match_method_plain = {rows_total, step};

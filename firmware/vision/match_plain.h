@@ -41,10 +41,6 @@ size_t tsr_match_plain_columns_len(const struct tsr_match_config *config);
 size_t tsr_match_plain_met_len(const struct tsr_match_config *config);
 struct tsr_match_plain_scratch tsr_match_share_plain(const struct tsr_match *match);
 
-unsigned tsr_match_plain_rows_total(const struct tsr_match_config *config);
-/* One row of work: 0 .. rows_total - 1, in this order. */
-void tsr_match_plain_step(const struct tsr_match *match, unsigned step);
-
 /* The right row y as entry which of met. */
 void tsr_match_mirror_row(const struct tsr_match *match, unsigned y, unsigned which);
 

@@ -17,11 +17,9 @@ const struct tsr_match_kernel tsr_match_kernel_sse2 = {
     .prefilter_row = prefilter_row,
     .add_row = warm_up_row,
     .match_row = match_row,
-    .describe_row = describe_row,
-    .add_census = add_census,
-    .census_row = census_row,
-    .cost_row = cost_row,
-    .smooth_row = smooth_row,
     .any_start = true,
 };
+
+const struct tsr_match_census_kernel tsr_match_census_sse2 = {describe_row, add_census, census_row, cost_row,
+                                                              smooth_row};
 #endif

@@ -63,20 +63,19 @@ struct tsr_match_kernel {
      * row y of the map of them: eqs. (12) to (17). */
     void (*match_row)(const struct tsr_match *match, unsigned y, unsigned y_new, unsigned y_old);
 
-    /* The census modes: descriptors of frame row y into their place, eq. (40). */
-    void (*describe_row)(const struct tsr_match *match, unsigned y);
-    /* census: as add_row and match_row, with C of rows that are described, eqs. (41), (47). */
-    void (*add_census)(const struct tsr_match *match, unsigned y, unsigned times);
-    void (*census_row)(const struct tsr_match *match, unsigned y, unsigned y_new, unsigned y_old);
-    /* smooth: costs of the row y that was described last, eq. (41), and row y of the map from those of rows y - 1 ..
-     * y + 1 and the paths, eqs. (42) to (46). Rows in ascending order. */
-    void (*cost_row)(const struct tsr_match *match, unsigned y);
-    void (*smooth_row)(const struct tsr_match *match, unsigned y);
-
     bool any_start; /* or search_start_px >= 0 only, and the portable kernel does the others */
 };
 
 extern const struct tsr_match_kernel tsr_match_kernel_portable;
+
+/* The rows of work of a mode: how many, and one of them, 0 .. rows_total - 1 in this order. What starts a match names
+ * its method and nothing else does, so that an image holds only what it starts. */
+struct tsr_match_method {
+    unsigned (*rows_total)(const struct tsr_match_config *config);
+    void (*step)(const struct tsr_match *match, unsigned row);
+};
+extern const struct tsr_match_method tsr_match_method_census;
+extern const struct tsr_match_method tsr_match_method_plain;
 
 /* The portable kernel in pieces. */
 void tsr_match_prefilter_row(const struct tsr_match *match, unsigned y);

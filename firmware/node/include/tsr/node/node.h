@@ -103,7 +103,7 @@ struct tsr_node_config {
     /* Camera roles; width and height of all three agree. */
     uint32_t watch_period_us;
     struct tsr_change_config change;
-    struct tsr_match_config match;
+    struct tsr_match_config match; /* of a SAD mode */
     struct tsr_similarity_config similarity;
     int16_t d0_q4;          /* disparity offset of the pair, px, Q12.4; carried in the map */
     uint8_t step_log2;      /* map's step 2^k / 16 px, 0..4 */

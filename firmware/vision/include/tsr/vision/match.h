@@ -47,6 +47,7 @@ enum tsr_match_mode {
 
 /* An implementation of the matcher for one instruction set, see below. */
 struct tsr_match_kernel;
+struct tsr_match_method;
 
 /* Zero in a field means the default named beside it. */
 struct tsr_match_config {
@@ -81,6 +82,7 @@ struct tsr_match {
     uint16_t *map;
     uint8_t *scratch;
     const struct tsr_match_kernel *kernel;
+    const struct tsr_match_method *method;
     uint16_t rows_done;
 };
 
@@ -144,6 +146,14 @@ uint16_t *tsr_match_pair_map(uint8_t *pair);
 enum tsr_status tsr_match_start(struct tsr_match *match, const struct tsr_match_config *config, struct tsr_gray left,
                                 struct tsr_gray right, uint16_t *map, size_t map_cap, uint8_t *scratch,
                                 size_t scratch_cap);
+
+/*
+ * The same for TSR_MATCH_SAD and TSR_MATCH_SAD8 alone, other modes being TSR_ERR_ARG. An image that never calls
+ * tsr_match_start() is linked without the code of the other modes (about 12 KB on a Cortex-M4).
+ */
+enum tsr_status tsr_match_start_sad(struct tsr_match *match, const struct tsr_match_config *config,
+                                    struct tsr_gray left, struct tsr_gray right, uint16_t *map, size_t map_cap,
+                                    uint8_t *scratch, size_t scratch_cap);
 
 /*
  * Continue for at most rows rows of work, of tsr_match_rows_total() in all:
