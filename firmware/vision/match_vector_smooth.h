@@ -163,7 +163,6 @@ static void find_smooth_winners(struct smooth_row *row, unsigned percent, struct
     for (unsigned i = 0; i <= BLOCK; i++) {
         memset(keys_at(keys, row->shape, i) - KEY_PAD, 0, KEY_PAD * sizeof *keys);
     }
-    memset(winners->kept + (size_t)row->width * KEPT_LANES, 0, BLOCK * KEPT_LANES * sizeof *winners->kept);
     begin_smooth_row(row);
     for (unsigned from = 0; from < row->width; from += BLOCK) {
         unsigned left = row->width - from;
@@ -194,6 +193,7 @@ static void smooth_row(const struct tsr_match *match, unsigned y)
     struct winners winners;
     struct verdicts verdicts;
     struct choices choices;
+    memset(winners.kept + (size_t)config->width * KEPT_LANES, 0, BLOCK * KEPT_LANES * sizeof *winners.kept);
     find_smooth_winners(&row, config->uniqueness_percent, &winners);
     memset(verdicts.textured, 0xff, sizeof verdicts.textured);
     choose(config, &winners, &verdicts, &choices);
