@@ -1,8 +1,9 @@
 /*
- * Hamming distances of census descriptors with MVE, sixteen disparities at once.
+ * Census sums of a row with MVE: the window slides over column sums that are
+ * moved down already, and its sums are keys as match_mve_window.h says.
  *
- * A group of lanes walks along the whole row before the next one does: what a
- * pixel takes over from the one beside it stays in registers.
+ * Columns are up to 240, so that what enters less what leaves does not fit a
+ * byte: both are widened first.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -10,126 +11,106 @@
 
 #ifdef TSR_MATCH_HAS_MVE
 
-#include <arm_mve.h>
+#include <string.h>
 
 #include "match_mve.h"
+#include "match_mve_search.h"
 
-/* What selects fields of 2 and 4 bits, and what adds a field to the one below it. In registers, where compilers would
- * make the vectors anew for every use. */
-struct masks {
-    uint8x16_t twos;
-    uint8x16_t fours;
-    uint8_t fold_twos;
-    uint8_t fold_fours;
-};
+#define CLAIM_SHIFT 3u
 
-static inline struct masks load_masks(void)
+/* Keys += column - leave; the least key. */
+static inline unsigned move_keys(const struct mve_window *window)
 {
-    struct masks masks = {vdupq_n_u8(0x55), vdupq_n_u8(0x33), (uint8_t)(1 - 4), (uint8_t)(1 - 16)};
-    __asm("" : "+w"(masks.twos), "+w"(masks.fours));
-    return masks;
+    const uint8_t *column = window->column;
+    const uint8_t *leave = window->leave;
+    uint16_t *even = window->even;
+    uint16_t *odd = window->odd;
+    unsigned least;
+    __asm volatile("vmov.i8 q6, #0xff\n\t"
+                   "dlstp.8 lr, %[lanes]\n"
+                   "1:\n\t"
+                   "vldrb.u8 q0, [%[column]], #16\n\t"
+                   "vshllb.u8 q2, q0, %[shift]\n\t"
+                   "vldrb.u8 q1, [%[leave]], #16\n\t"
+                   "vshllt.u8 q0, q0, %[shift]\n\t"
+                   "vldrh.u16 q4, [%[even]]\n\t"
+                   "vshllb.u8 q3, q1, %[shift]\n\t"
+                   "vadd.i16 q2, q2, q4\n\t"
+                   "vldrh.u16 q5, [%[odd]]\n\t"
+                   "vsub.i16 q2, q2, q3\n\t"
+                   "vshllt.u8 q1, q1, %[shift]\n\t"
+                   "vstrh.16 q2, [%[even]], #16\n\t"
+                   "vadd.i16 q0, q0, q5\n\t"
+                   "vmin.u16 q6, q6, q2\n\t"
+                   "vsub.i16 q0, q0, q1\n\t"
+                   "vstrh.16 q0, [%[odd]], #16\n\t"
+                   "vmin.u16 q6, q6, q0\n\t"
+                   "letp lr, 1b\n\t"
+                   "mvn %[least], #0\n\t"
+                   "vminv.u16 %[least], q6"
+                   : [least] "=r"(least), [column] "+r"(column), [leave] "+r"(leave), [even] "+r"(even), [odd] "+r"(odd)
+                   : [lanes] "r"(window->lanes), [shift] "i"(MVE_KEY_SHIFT)
+                   : "q0", "q1", "q2", "q3", "q4", "q5", "q6", "lr", "memory");
+    return least;
 }
 
-/* Set bits in fields of 4 bits, 0 .. 4 each. With the upper field taken out, x - 3 (x >> 2) is the sum of the two. */
-static inline uint8x16_t count_nibbles(const struct masks *masks, uint8x16_t bits)
+/* The keys of the first column that counts, as if it stood there `window` times; all are barred. */
+static struct mve_window begin_keys(const struct tsr_match *match, unsigned first)
 {
-    uint8x16_t twos = vsubq_u8(bits, vandq_u8(vshrq_n_u8(bits, 1), masks->twos));
-    return vmlaq_n_u8(twos, vandq_u8(vshrq_n_u8(twos, 2), masks->fours), masks->fold_twos);
-}
-
-/* The descriptors that a group of lanes meets: those of the next pixel lie one byte lower. */
-struct lanes {
-    const uint8_t *left[TSR_MATCH_CENSUS_PLANES];
-    const uint8_t *right[TSR_MATCH_CENSUS_PLANES];
-};
-
-static inline struct lanes lanes_of(const struct tsr_match_planes *planes, unsigned width, unsigned d)
-{
-    struct lanes lanes = {{planes->left[0], planes->left[1]},
-                          {planes->right[0] + width - 1u + d, planes->right[1] + width - 1u + d}};
-    return lanes;
-}
-
-/* C(x,y,d) of a group, and on to the next pixel: docs/math.md, eq. (41). */
-static inline uint8x16_t next_cost(const struct masks *masks, struct lanes *lanes)
-{
-    uint8x16_t cross = veorq_u8(vldrbq_u8(lanes->right[0]--), vdupq_n_u8(*lanes->left[0]++));
-    uint8x16_t knight = veorq_u8(vldrbq_u8(lanes->right[1]--), vdupq_n_u8(*lanes->left[1]++));
-    uint8x16_t nibbles = vaddq_u8(count_nibbles(masks, cross), count_nibbles(masks, knight));
-    return vmlaq_n_u8(nibbles, vshrq_n_u8(nibbles, 4), masks->fold_fours);
-}
-
-/* Where the group of lane d begins: the last one, if it would be half, sixteen lanes before the end, so that it does
- * some again. */
-static inline unsigned group_at(unsigned d, unsigned disparities)
-{
-    return d + TSR_MVE_GROUP <= disparities ? d : disparities - TSR_MVE_GROUP;
-}
-
-/* Sums of three columns, those outside being the nearest inside. */
-void tsr_mve_cost_row(const struct tsr_match *match, unsigned y)
-{
-    unsigned width = match->config.width;
     unsigned disparities = match->config.disparities;
-    struct tsr_match_planes planes = tsr_match_planes_at(match, y);
-    const struct masks masks = load_masks();
-    for (unsigned d = 0; d < disparities; d += TSR_MVE_GROUP) {
-        unsigned first = group_at(d, disparities);
-        uint8_t *sums = tsr_match_costs_at(match, y) + first;
-        struct lanes lanes = lanes_of(&planes, width, first);
-        uint8x16_t here = next_cost(&masks, &lanes);
-        uint8x16_t both = vaddq_u8(here, here); /* this column and the one before */
-#pragma GCC unroll 2
-        for (unsigned x = 1; x < width; x++, sums += disparities) {
-            uint8x16_t cost = next_cost(&masks, &lanes);
-            vstrbq_u8(sums, vaddq_u8(both, cost));
-            both = vaddq_u8(here, cost);
-            here = cost;
+    uint8_t *column = tsr_match_share_scratch(match).columns + (size_t)first * disparities;
+    uint16_t *even = (uint16_t *)(void *)match->scratch;
+    uint16_t *odd = even + disparities / 2u + MVE_PAD;
+    memset(even + disparities / 2u, 0xff, sizeof *even * MVE_PAD);
+    memset(odd + disparities / 2u, 0xff, sizeof *odd * MVE_PAD);
+    mve_fill_keys(even, odd, disparities, column, match->config.window);
+    return (struct mve_window){.column = column, .leave = column, .even = even, .odd = odd, .lanes = disparities};
+}
+
+static void slide(const struct tsr_match *match)
+{
+    const struct tsr_match_config *config = &match->config;
+    struct tsr_match_scratch scratch = tsr_match_share_scratch(match);
+    unsigned start = (unsigned)config->search_start_px;
+    unsigned radius = config->window / 2u;
+    unsigned last = config->width - 1u;
+    unsigned first = start > radius ? start - radius : 0u;
+    struct mve_uniqueness uniqueness = mve_uniqueness_of(config);
+    struct mve_window window = begin_keys(match, first);
+    struct tsr_mve_found found[TSR_MVE_FOUND_COUNT];
+    uint16_t *choices = scratch.choices + start;
+    unsigned count = 0;
+    for (unsigned enter = first + 1u; enter <= last + radius; enter++) {
+        unsigned pixel = enter - radius - start; /* lane `pixel` is searched from this one on */
+        window.column += enter <= last ? window.lanes : 0u;
+        window.leave += enter > first + config->window ? window.lanes : 0u;
+        if (pixel < window.lanes) {
+            uint16_t *key = (pixel % 2u != 0 ? window.odd : (uint16_t *)window.even) + pixel / 2u;
+            *key = (uint16_t)(*key ^ MVE_KEY_BARRED);
         }
-        vstrbq_u8(sums, vaddq_u8(both, here));
-    }
-}
-
-/* A half group at the end keeps its lower lanes, which are another one's. */
-void tsr_mve_add_census(const struct tsr_match *match, unsigned y, unsigned times)
-{
-    unsigned width = match->config.width;
-    unsigned disparities = match->config.disparities;
-    struct tsr_match_planes planes = tsr_match_planes_at(match, y);
-    const struct masks masks = load_masks();
-    for (unsigned d = 0; d < disparities; d += TSR_MVE_GROUP) {
-        unsigned first = group_at(d, disparities);
-        mve_pred16_t own = first == d ? 0xffffu : 0xff00u;
-        uint8_t *column = tsr_match_share_scratch(match).columns + first;
-        struct lanes lanes = lanes_of(&planes, width, first);
-        for (unsigned x = 0; x < width; x++, column += disparities) {
-            uint8x16_t sums = vmlaq_n_u8(vldrbq_u8(column), next_cost(&masks, &lanes), (uint8_t)times);
-            vstrbq_p_u8(column, sums, own);
+        unsigned key = move_keys(&window);
+        if (enter < start + radius) {
+            continue;
+        }
+        found[count++] = mve_search_keys(&uniqueness, &window, scratch.claims + pixel, CLAIM_SHIFT, key);
+        if (count == TSR_MVE_FOUND_COUNT) {
+            tsr_mve_choose(found, count, MVE_KEY_SHIFT, 0, choices);
+            choices += count;
+            count = 0;
         }
     }
+    tsr_mve_choose(found, count, MVE_KEY_SHIFT, 0, choices);
 }
 
-static inline uint8x16_t penalty_far(uint8x16_t gray, uint8x16_t gray_before)
+/* Adding modulo 256, so that taking away is adding 255 times. */
+void tsr_mve_census_row(const struct tsr_match *match, unsigned y, unsigned y_new, unsigned y_old)
 {
-    uint8x16_t less = vqsubq_u8(vdupq_n_u8(TSR_MATCH_PENALTY_FAR), vabdq_u8(gray, gray_before));
-    return vmaxq_u8(less, vdupq_n_u8(TSR_MATCH_PENALTY_NEAR));
-}
-
-/* The last pixels may be done twice: widths are at least 16. */
-void tsr_mve_find_penalties(const struct tsr_match *match, unsigned y, struct tsr_mve_penalties *penalties)
-{
-    unsigned width = match->config.width;
-    const uint8_t *row = match->left.pixels + (size_t)y * match->left.stride;
-    const uint8_t *row_above = y > 0 ? row - match->left.stride : row;
-    for (unsigned x = 0; x < width; x += TSR_MVE_GROUP) {
-        unsigned at = group_at(x, width);
-        uint8x16_t gray = vldrbq_u8(row + at);
-        uint32_t before = at > 0 ? row[at - 1u] : 0u;
-        uint8x16_t left = vshlcq_u8(gray, &before, 8);
-        uint8x16_t right = vldrbq_z_u8(row_above + at + 1, vctp8q(width - 1u - at));
-        uint8x16x4_t found = {
-            {penalty_far(gray, left), penalty_far(gray, vldrbq_u8(row_above + at)), penalty_far(gray, right), gray}};
-        vst4q_u8((uint8_t *)(penalties + at), found);
-    }
+    struct tsr_match_scratch scratch = tsr_match_share_scratch(match);
+    tsr_mve_add_census(match, y_old, UINT8_MAX);
+    tsr_mve_add_census(match, y_new, 1u);
+    memset(scratch.claims, 0xff, sizeof *scratch.claims * match->config.width);
+    memset(scratch.choices, 0xff, sizeof *scratch.choices * (unsigned)match->config.search_start_px);
+    slide(match);
+    tsr_mve_write_row(match, y);
 }
 #endif

@@ -7,6 +7,8 @@
 #ifndef TSR_VISION_MATCH_MVE_SEARCH_H
 #define TSR_VISION_MATCH_MVE_SEARCH_H
 
+#include <arm_acle.h>
+
 #include "match_mve_window.h"
 
 /* docs/math.md, eq. (15). The scale is ceil(2^19 (100 + uniqueness) / 100), too large by at most 1: with sums up to
@@ -87,7 +89,7 @@ mve_search_sums(const struct mve_uniqueness *uniqueness, uint8_t *sums, unsigned
     mve_store_word(below, near | 0xffffffu);
     unsigned others = mve_find_least_sum(sums, lanes);
     mve_store_word(below, near);
-    bool unique = others >= mve_bound_others(uniqueness, sum) || others == UINT8_MAX;
+    bool unique = others >= __usat((int32_t)mve_bound_others(uniqueness, sum), 8); /* 255: there are no others */
     uint32_t pair = d - 1u < lanes - 2u ? near & 0xff00ffu : UINT32_MAX;
     return (struct tsr_mve_found){unique ? sum | d << 16 : UINT32_MAX, pair};
 }

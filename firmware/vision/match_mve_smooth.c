@@ -175,8 +175,8 @@ static inline unsigned walk_pixel(struct walk *walk)
 {
     unsigned least;
     __asm volatile(BEGIN_PIXEL SET_PADS WALK_LEFT WALK_DOWN
-                   : [least] "=&r"(least)
-                   : [walk] "r"(walk), [near] "i"(TSR_MATCH_PENALTY_NEAR)
+                   : [least] "=&h"(least)
+                   : [walk] "h"(walk), [near] "i"(TSR_MATCH_PENALTY_NEAR)
                    : "r0", "r1", "r2", "r3", "r4", "r5", "r6", "r8", "r9", "r10", "lr", "q0", "q1", "q2", "q3", "q4",
                      "q5", "q6", "q7", "cc", "memory");
     return least;
@@ -220,39 +220,73 @@ static struct walk begin_walk(const struct tsr_match *match, unsigned y, struct 
     };
 }
 
+/* What the pixels of a row are found out with. */
+struct row {
+    struct walk walk;
+    struct mve_uniqueness uniqueness;
+    struct tsr_mve_found found[TSR_MVE_FOUND_COUNT];
+    uint16_t *claims;  /* of the next pixel's lane 0 */
+    uint16_t *choices; /* of the next pixel */
+    unsigned offered;  /* lanes that the next pixel can search, while they are not all */
+};
+
+/* The next pixels, up to eight. */
+static inline __attribute__((always_inline)) void find_pixels(struct row *row, unsigned count, bool border)
+{
+    uint8_t *sums = row->walk.sums;
+    uint16_t *claims = row->claims;
+    struct tsr_mve_found *end = row->found + count;
+    for (struct tsr_mve_found *next = row->found; next != end; next++) {
+        unsigned least = walk_pixel(&row->walk);
+        unsigned offered = row->walk.lanes;
+        if (border && row->offered < offered) {
+            offered = row->offered++;
+            least = mve_find_least_sum(sums, offered);
+        }
+        *next = mve_search_sums(&row->uniqueness, sums, offered, claims++, CLAIM_SHIFT, least);
+    }
+    tsr_mve_choose(row->found, count, 0, 0, row->choices);
+    row->claims = claims;
+    row->choices += count;
+}
+
+static __attribute__((noinline)) void find_border_pixels(struct row *row, unsigned count)
+{
+    find_pixels(row, count, true);
+}
+
+static __attribute__((noinline)) void pass_pixels(struct walk *walk, unsigned count)
+{
+    for (unsigned x = 0; x < count; x++) {
+        (void)walk_pixel(walk);
+    }
+}
+
 void tsr_mve_smooth_row(const struct tsr_match *match, unsigned y)
 {
     const struct tsr_match_config *config = &match->config;
     struct tsr_match_scratch scratch = tsr_match_share_scratch(match);
     unsigned start = (unsigned)config->search_start_px;
-    struct mve_uniqueness uniqueness = mve_uniqueness_of(config);
-    struct tsr_mve_found found[TSR_MVE_FOUND_COUNT];
+    unsigned border = start + config->disparities; /* all lanes can be searched from here */
     struct lanes lanes;
-    struct walk walk = begin_walk(match, y, &lanes);
-    uint16_t *claims = scratch.claims;
-    uint16_t *choices = scratch.choices + start;
-    unsigned count = 0;
+    struct row row = {.walk = begin_walk(match, y, &lanes),
+                      .uniqueness = mve_uniqueness_of(config),
+                      .claims = scratch.claims,
+                      .choices = scratch.choices + start,
+                      .offered = 1};
     memset(scratch.claims, 0xff, sizeof *scratch.claims * config->width);
     memset(scratch.choices, 0xff, sizeof *scratch.choices * start);
-    for (unsigned x = 0; x < start; x++) {
-        (void)walk_pixel(&walk);
-    }
-    for (unsigned searched = 1; searched <= config->width - start; searched++) {
-        unsigned least = walk_pixel(&walk);
-        unsigned offered = walk.lanes;
-        if (searched < offered) {
-            offered = searched;
-            least = mve_find_least_sum(walk.sums, offered);
-        }
-        found[count++] = mve_search_sums(&uniqueness, walk.sums, offered, claims++, CLAIM_SHIFT, least);
-        if (count == TSR_MVE_FOUND_COUNT) {
-            tsr_mve_choose(found, count, 0, 0, choices);
-            choices += count;
-            count = 0;
+    pass_pixels(&row.walk, start);
+    for (unsigned x = start; x < config->width; x += TSR_MVE_FOUND_COUNT) {
+        unsigned left = config->width - x;
+        unsigned count = left < TSR_MVE_FOUND_COUNT ? left : TSR_MVE_FOUND_COUNT;
+        if (x < border) {
+            find_border_pixels(&row, count);
+        } else {
+            find_pixels(&row, count, false);
         }
     }
-    tsr_mve_choose(found, count, 0, 0, choices);
-    walk.up[walk.lanes] = (uint8_t)walk.kept_up;
+    row.walk.up[row.walk.lanes] = (uint8_t)row.walk.kept_up;
     tsr_mve_write_row(match, y);
 }
 #endif
