@@ -15,27 +15,35 @@
 
 #include "match_mve.h"
 
-/* What selects fields of 2 and 4 bits, and what adds a field to the one below it. In registers, where compilers would
- * make the vectors anew for every use. */
+/* The even fields of 1 and of 2 bits. In registers, where compilers would make the vectors anew for every use. */
 struct masks {
+    uint8x16_t ones;
     uint8x16_t twos;
-    uint8x16_t fours;
-    uint8_t fold_twos;
-    uint8_t fold_fours;
 };
 
 static inline struct masks load_masks(void)
 {
-    struct masks masks = {vdupq_n_u8(0x55), vdupq_n_u8(0x33), (uint8_t)(1 - 4), (uint8_t)(1 - 16)};
-    __asm("" : "+w"(masks.twos), "+w"(masks.fours));
+    struct masks masks = {vdupq_n_u8(0x55), vdupq_n_u8(0x33)};
+    __asm("" : "+w"(masks.ones), "+w"(masks.twos));
     return masks;
 }
 
-/* Set bits in fields of 4 bits, 0 .. 4 each. With the upper field taken out, x - 3 (x >> 2) is the sum of the two. */
-static inline uint8x16_t count_nibbles(const struct masks *masks, uint8x16_t bits)
+/* a - times b, modulo 256. */
+static inline uint8x16_t subtract(uint8x16_t a, unsigned times, uint8x16_t b)
 {
-    uint8x16_t twos = vsubq_u8(bits, vandq_u8(vshrq_n_u8(bits, 1), masks->twos));
-    return vmlaq_n_u8(twos, vandq_u8(vshrq_n_u8(twos, 2), masks->fours), masks->fold_twos);
+    return vmlaq_n_u8(a, b, (uint8_t)(0u - times));
+}
+
+/* Set bits of both bytes, 0 .. 16. VHADD adds the odd fields of two bytes without losing a carry, and moves the sums
+ * one bit down; taken from the sum of all fields they leave that of the even ones. */
+static inline uint8x16_t count_bits(const struct masks *masks, uint8x16_t a, uint8x16_t b)
+{
+    uint8x16_t odd = vhaddq_u8(vbicq_u8(a, masks->ones), vbicq_u8(b, masks->ones)); /* fields of 2 bits, 0 .. 2 */
+    uint8x16_t even = subtract(vaddq_u8(a, b), 2, odd);
+    uint8x16_t upper = vhaddq_u8(vbicq_u8(even, masks->twos), vbicq_u8(odd, masks->twos));
+    upper = vshrq_n_u8(upper, 1);                                 /* of 4 bits, 0 .. 4 */
+    uint8x16_t nibbles = subtract(vaddq_u8(even, odd), 3, upper); /* 0 .. 8 */
+    return subtract(nibbles, 15, vshrq_n_u8(nibbles, 4));
 }
 
 /* The descriptors that a group of lanes meets: those of the next pixel lie one byte lower. */
@@ -56,8 +64,7 @@ static inline uint8x16_t next_cost(const struct masks *masks, struct lanes *lane
 {
     uint8x16_t cross = veorq_u8(vldrbq_u8(lanes->right[0]--), vdupq_n_u8(*lanes->left[0]++));
     uint8x16_t knight = veorq_u8(vldrbq_u8(lanes->right[1]--), vdupq_n_u8(*lanes->left[1]++));
-    uint8x16_t nibbles = vaddq_u8(count_nibbles(masks, cross), count_nibbles(masks, knight));
-    return vmlaq_n_u8(nibbles, vshrq_n_u8(nibbles, 4), masks->fold_fours);
+    return count_bits(masks, cross, knight);
 }
 
 /* Where the group of lane d begins: the last one, if it would be half, sixteen lanes before the end, so that it does

@@ -2,14 +2,14 @@
  * Path costs and the choice among their sums with MVE: sixteen disparities at
  * once, all of it in 8 bits.
  *
- * costs, as tsr_mve_cost_row() leaves them, are sums of three columns already;
- * three rows of them are a quarter short of B, eq. (42). In the scratch
+ * The costs that tsr_mve_cost_row() leaves are sums of three columns already, so
+ * that a quarter of three rows of them is B, eq. (42). In the scratch are
  *
- *   above     path costs as match_census.h says; the place behind those from up-right, `before`, holds zeros for the
- *             pixel right of the row
- *   texture   the least of the path costs from above
- *   least     [0 .. W] of those from up-right, the last one zero
- *   planes    struct penalties [W], for as long as a row takes
+ *   above     path costs as match_census.h says
+ *   before    zeros, read as above [1][W]: the source right of the row
+ *   texture   uint8_t [W], the least of above [0] over d
+ *   least     uint8_t [W + 1], that of above [1], the last one zero
+ *   planes    struct tsr_mve_penalties [W], while a row is made: its descriptors have become costs
  *
  * and the path costs from the left and the sums S are on the stack, between
  * pads of 255.
@@ -182,7 +182,7 @@ static inline unsigned walk_pixel(struct walk *walk)
     return least;
 }
 
-/* Lane buffers of a row, between pads. */
+/* Path costs from the left and S of one pixel, from PAD on. */
 struct lanes {
     uint8_t left[PAD + TSR_DISPARITY_COUNT_MAX + PAD];
     uint8_t sums[PAD + TSR_DISPARITY_COUNT_MAX + PAD];
