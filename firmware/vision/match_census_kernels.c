@@ -13,7 +13,7 @@ static const struct {
     const struct tsr_match_census_kernel *census;
 } kernels[] = {
 #if defined(TSR_MATCH_HAS_MVE)
-    {&tsr_match_kernel_mve, &tsr_match_census_dsp},
+    {&tsr_match_kernel_mve, &tsr_match_census_mve},
 #endif
 #if defined(TSR_MATCH_HAS_DSP)
     {&tsr_match_kernel_dsp, &tsr_match_census_dsp},

@@ -14,6 +14,7 @@
 #if defined(__ARM_FEATURE_MVE)
 #define TSR_MATCH_HAS_MVE
 extern const struct tsr_match_kernel tsr_match_kernel_mve;
+extern const struct tsr_match_census_kernel tsr_match_census_mve;
 #endif
 
 /* Cortex-M4, M7, M33: the DSP extension's parallel arithmetic (ARMv7-M ARM, A4.4.3), in Thumb state. */

@@ -19,12 +19,13 @@
 #include <string.h>
 
 #include "match_mve.h"
-#include "match_mve_window.h"
+#include "match_mve_search.h"
+
+#define CLAIM_SHIFT 2u /* of the SAD modes */
 
 /* What one row works on. */
 struct row {
-    uint32_t unique_scale; /* ceil(2^20 (100 + uniqueness) / 100); 0: off */
-    uint32_t unique_one;
+    struct mve_uniqueness uniqueness;
     struct mve_window window;
     struct tsr_mve_found found[TSR_MVE_FOUND_COUNT];
     struct tsr_mve_found *next; /* of found */
@@ -46,84 +47,15 @@ static inline unsigned least_of(unsigned a, unsigned b)
     return a < b ? a : b;
 }
 
-static inline uint32_t load_word(const void *at)
-{
-    uint32_t word;
-    __builtin_memcpy(&word, at, sizeof word);
-    return word;
-}
-
-static inline void store_word(void *at, uint32_t word)
-{
-    __builtin_memcpy(at, &word, sizeof word);
-}
-
-static inline void claim_right(uint16_t *claims, unsigned sum, unsigned d)
-{
-    unsigned claim = sum >> 2 << 7 | d;
-    uint16_t *claimed = claims - d;
-    if (claim < *claimed) {
-        *claimed = (uint16_t)claim;
-    }
-}
-
-/* docs/math.md, eq. (15): the least that a sum beyond the neighbours must be. */
-static inline unsigned bound_others(const struct row *row, unsigned sum)
-{
-    return (sum * row->unique_scale >> 20) + row->unique_one;
-}
-
-/* What a pixel finds by its least key. */
-static inline __attribute__((always_inline)) struct tsr_mve_found search_keys(const struct row *row, uint16_t *claims,
-                                                                              unsigned key)
-{
-    unsigned group = key % (1u << MVE_KEY_SHIFT);
-    unsigned sum = key >> MVE_KEY_SHIFT;
-    uint16_t *even = row->window.even;
-    uint16_t *odd = row->window.odd;
-    unsigned d = TSR_MVE_GROUP * group + mve_find_lane(even + 8u * group, odd + 8u * group, key);
-    claim_right(claims, sum, d);
-    uint16_t *own = (d % 2u != 0 ? odd : even) + d / 2u;
-    uint16_t *beside = d % 2u != 0 ? even + d / 2u : odd + d / 2u - 1;
-    uint32_t pair = load_word(beside);
-    store_word(beside, UINT32_MAX);
-    *own = UINT16_MAX;
-    unsigned others = mve_find_least_key(even, odd, row->window.lanes);
-    store_word(beside, pair);
-    *own = (uint16_t)key;
-    bool unique = others >> MVE_KEY_SHIFT >= bound_others(row, sum);
-    return (struct tsr_mve_found){unique ? key | d << 16 : UINT32_MAX, pair};
-}
-
-/* What a pixel that can search some lanes finds by the least of its 8-bit sums. */
-static inline __attribute__((always_inline)) struct tsr_mve_found search_sums(const struct row *row, uint16_t *claims,
-                                                                              unsigned sum, unsigned lanes)
-{
-    uint8_t *sums = row->window.even;
-    unsigned d = mve_find_lane_of_sum(sums, sum);
-    claim_right(claims, sum, d);
-    uint8_t *below = sums + d - 1;
-    uint32_t near = load_word(below);
-    store_word(below, near | 0xffffffu);
-    unsigned others = mve_find_least_sum(sums, lanes);
-    store_word(below, near);
-    bool unique = others >= bound_others(row, sum) || others == UINT8_MAX;
-    uint32_t pair = d - 1u < lanes - 2u ? near & 0xff00ffu : UINT32_MAX;
-    return (struct tsr_mve_found){unique ? sum | d << 16 : UINT32_MAX, pair};
-}
-
 /* Lays a row's working memory over the scratch. */
 static void begin_row(const struct tsr_match *match, unsigned y_new, unsigned y_old, struct row *row)
 {
     const struct tsr_match_config *config = &match->config;
     struct tsr_match_scratch scratch = tsr_match_share_scratch(match);
     unsigned start = (unsigned)config->search_start_px;
-    unsigned scale = ((100u + config->uniqueness_percent) << 20) / 100u + 1u;
-    bool off = config->uniqueness_percent == TSR_MATCH_TEST_OFF;
     bool textured = config->texture_min != TSR_MATCH_TEST_OFF;
     uint16_t *keys = (uint16_t *)(void *)match->scratch;
-    row->unique_scale = off ? 0 : scale;
-    row->unique_one = off ? 0 : 1;
+    row->uniqueness = mve_uniqueness_of(config);
     row->claims = scratch.claims;
     row->choices = scratch.choices + start;
     row->next = row->found;
@@ -237,7 +169,7 @@ static inline __attribute__((always_inline)) void slide_keys(struct row *row, un
         } else {
             key = mve_move_keys(&row->window);
         }
-        *next++ = search_keys(row, claims++, key);
+        *next++ = mve_search_keys(&row->uniqueness, &row->window, claims++, CLAIM_SHIFT, key);
         if (next == row->found + TSR_MVE_FOUND_COUNT) {
             next = finish_found(row, next);
         }
@@ -272,7 +204,7 @@ static inline __attribute__((always_inline)) void slide_sums(struct row *row, un
         } else {
             sum = mve_move_sums(&row->window);
         }
-        *next++ = search_sums(row, claims++, sum, lanes);
+        *next++ = mve_search_sums(&row->uniqueness, row->window.even, lanes, claims++, CLAIM_SHIFT, sum);
         if (next == row->found + TSR_MVE_FOUND_COUNT) {
             next = finish_found(row, next);
         }
@@ -317,4 +249,7 @@ const struct tsr_match_kernel tsr_match_kernel_mve = {
     .add_row = tsr_mve_add_row,
     .match_row = match_row,
 };
+
+const struct tsr_match_census_kernel tsr_match_census_mve = {tsr_mve_describe_row, tsr_mve_add_census,
+                                                             tsr_mve_census_row, tsr_mve_cost_row, tsr_mve_smooth_row};
 #endif

@@ -2,6 +2,9 @@
  * What the files of the MVE kernel share: rows are prefiltered, added and
  * written in match_mve_rows.c, match_mve.c slides the window of
  * match_mve_window.h along a row, match_mve_choose.c judges what it finds.
+ * The census modes describe pixels in match_mve_describe.c and compare them in
+ * match_mve_costs.c; match_mve_census.c sums over windows, match_mve_smooth.c
+ * along paths, and both search as match_mve.c does (match_mve_search.h).
  *
  * Assembly statements that compare change VPR, for which GCC 12 has no name
  * among the clobbers: no function has both those and predicated intrinsics.
@@ -11,7 +14,7 @@
 #ifndef TSR_VISION_MATCH_MVE_H
 #define TSR_VISION_MATCH_MVE_H
 
-#include "match_stages.h"
+#include "match_census.h"
 
 #define TSR_MVE_GROUP 16u /* lanes d of a vector */
 
@@ -37,5 +40,22 @@ void tsr_mve_choose(const struct tsr_mve_found found[TSR_MVE_FOUND_COUNT], unsig
 
 /* tsr_match_write_row() for search_start_px >= 0. */
 void tsr_mve_write_row(const struct tsr_match *match, unsigned y);
+
+/* The census modes, as struct tsr_match_kernel says. */
+void tsr_mve_describe_row(const struct tsr_match *match, unsigned y);
+void tsr_mve_add_census(const struct tsr_match *match, unsigned y, unsigned times);
+void tsr_mve_census_row(const struct tsr_match *match, unsigned y, unsigned y_new, unsigned y_old);
+/* As tsr_match_cost_row(), but each cost is a sum of three columns, those outside being the nearest inside: 0 .. 48. */
+void tsr_mve_cost_row(const struct tsr_match *match, unsigned y);
+
+/* docs/math.md, eq. (43), of a pixel's three paths; of no meaning where the path starts. */
+struct tsr_mve_penalties {
+    uint8_t left;
+    uint8_t up;
+    uint8_t right;
+    uint8_t reserved;
+};
+void tsr_mve_find_penalties(const struct tsr_match *match, unsigned y, struct tsr_mve_penalties *penalties);
+void tsr_mve_smooth_row(const struct tsr_match *match, unsigned y);
 
 #endif
