@@ -1,6 +1,6 @@
 /*
  * Median of a disparity map, in place: the rows that are already overwritten
- * are read from copies. Here is 3x3; median_wide.c has 5x5.
+ * are read from copies. Here is 3x3, block by block; median_wide.c has 5x5.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -9,9 +9,8 @@
 #include <string.h>
 
 #include "map_buffers.h"
+#include "median_block.h"
 #include "median_wide.h"
-
-#define NEIGHBOURS_MAX 9
 
 /* The nearest rows before the median; NULL outside the map. */
 struct rows {
@@ -39,32 +38,15 @@ enum tsr_status tsr_median_start(struct tsr_median *median, uint16_t width, uint
     return tsr_median_start_window(median, TSR_MEDIAN_WINDOW, width, height, map, map_cap, scratch, scratch_cap);
 }
 
-/* Insert a value into the first count ones, which ascend. */
-static void insert_ascending(uint16_t *values, unsigned count, uint16_t value)
+/* Columns x - 1 .. x + TSR_MEDIAN_BLOCK of one row, invalid outside the map. */
+static void copy_row(const uint16_t *row, unsigned x, unsigned width, uint16_t values[TSR_MEDIAN_COLUMNS])
 {
-    unsigned i = count;
-    for (; i > 0 && values[i - 1] > value; i--) {
-        values[i] = values[i - 1];
-    }
-    values[i] = value;
-}
-
-static uint16_t filter_pixel(const struct rows *rows, unsigned x, unsigned width)
-{
-    uint16_t values[NEIGHBOURS_MAX];
-    unsigned count = 0;
+    memset(values, 0xff, TSR_MEDIAN_COLUMNS * sizeof *values);
     unsigned first = x > 0 ? x - 1u : 0u;
-    unsigned last = x + 1u < width ? x + 1u : x;
-    for (unsigned i = 0; i < 3; i++) {
-        for (unsigned column = first; rows->row[i] != NULL && column <= last; column++) {
-            uint16_t value = rows->row[i][column];
-            if (value != TSR_DISPARITY_INVALID) {
-                insert_ascending(values, count++, value);
-            }
-        }
+    unsigned end = x + TSR_MEDIAN_BLOCK + 1u < width ? x + TSR_MEDIAN_BLOCK + 1u : width;
+    if (row != NULL) {
+        memcpy(values + (first + 1u - x), row + first, (end - first) * sizeof *values);
     }
-    /* cppcheck-suppress uninitvar ; count values are set */
-    return count >= TSR_MEDIAN_VALID_MIN ? values[(count - 1u) / 2u] : TSR_DISPARITY_INVALID;
 }
 
 /* Scratch holds rows y - 1 and y as they were, at y's parity; each row is saved
@@ -77,8 +59,14 @@ static void filter_row(const struct tsr_median *median, unsigned y)
     memcpy(saved[y % 2u], row, sizeof *row * width);
     struct rows rows = {
         {y > 0 ? saved[(y + 1u) % 2u] : NULL, saved[y % 2u], y + 1u < median->height ? row + width : NULL}};
-    for (unsigned x = 0; x < width; x++) {
-        row[x] = filter_pixel(&rows, x, median->width);
+    for (unsigned x = 0; x < width; x += TSR_MEDIAN_BLOCK) {
+        struct tsr_median_block block;
+        uint16_t medians[TSR_MEDIAN_BLOCK];
+        for (unsigned i = 0; i < 3; i++) {
+            copy_row(rows.row[i], x, median->width, block.values[i]);
+        }
+        tsr_median_filter_block(&block, medians);
+        memcpy(row + x, medians, (x + TSR_MEDIAN_BLOCK < width ? TSR_MEDIAN_BLOCK : width - x) * sizeof *row);
     }
 }
 

@@ -63,9 +63,9 @@ enum tsr_status tsr_median_start_window(struct tsr_median *median, uint8_t windo
                                         uint16_t *map, size_t map_cap, uint8_t *scratch, size_t scratch_cap);
 
 /*
- * Continue for at most rows rows, each about 210 instructions per pixel of 3x3
- * and 590 of 5x5 (Cortex-M4). The result does not depend on how the rows are divided among
- * calls.
+ * Continue for at most rows rows, each about 80 instructions per pixel of 3x3 and
+ * 600 of 5x5 (Cortex-M4). The result does not depend on how the rows are divided
+ * among calls.
  *
  * Returns TSR_AGAIN while rows are left, TSR_OK when the map is complete (and
  * from then on, doing nothing); TSR_ERR_ARG for a null median or rows = 0.
