@@ -189,6 +189,14 @@ def calibrations(folder):
     refuse("calibration: no size", command("good.yml", RIG, "--source", "320"), "--source", "WIDTHxHEIGHT")
     refuse("calibration: no step", command("good.yml", RIG, "--step", "7"), "--step")
     refuse("calibration: no file", [TARSIER, "rectify-table", folder / "none.yml", "-o", table], "none.yml")
+    refuse("calibration: another size than it says", command("good.yml", RIG, "--calibrated", "320x240"), "--calibrated",
+           "640x480")
+    refuse("calibration: no width", command("good.yml", RIG, "--width", "0", "--height", "0"), "--width", "above 0")
+    refuse("calibration: table over the calibration", command("good.yml", RIG)[:-1] + [folder / "good.yml"], "--out",
+           "is an input")
+    check((folder / "good.yml").read_text() == RIG, "the calibration was overwritten")
+    refuse("calibration: header over the table", command("good.yml", RIG, "--c-header", folder / "." / table.name),
+           "--c-header", "--out")
     nowhere = command("good.yml", RIG)
     nowhere[-1] = folder / "no/such/folder/rig.rect"
     refuse("calibration: nowhere to write", nowhere, "no/such/folder")

@@ -132,6 +132,7 @@ def bad_input(scene, folder):
     for name, value in (("129 disparities", 129), ("33 disparities", 33), ("0 disparities", 0), ("-8 disparities", -8),
                         ("disparities beyond 16 bits", 65568)):
         refuse_pair(name, "--disparities", value, mentions=["--disparities", "128"])
+    filters = ("--refine", "speckle,diffusion")
     for option, values in (("--window", (0, 4, 8, 17, 265)), ("--uniqueness", ("0", "101", "255", "never")),
                            ("--texture", ("0", "128", "1x")), ("--lr", ("0", "128", "")),
                            ("--search-start", (129, -129, 70000)), ("--speckle-size", (1, 0, 4097, -5)),
@@ -139,13 +140,18 @@ def bad_input(scene, folder):
                            ("--diffusion-edge", (0, 16)), ("--mode", ("rank", "", "SAD")),
                            ("--refine", ("median4", "median3,,fill", "", "fill,none", ",".join(["fill"] * 9)))):
         for value in values:
-            refuse_pair(f"{option} {value}", "--disparities", 32, f"{option}={value}", mentions=[option])
-    for mode, option, value in (("smooth", "--window", 9), ("smooth", "--texture", 2), ("census", "--texture", "off"),
+            more = filters if option.startswith(("--speckle", "--diffusion")) else ()
+            refuse_pair(f"{option} {value}", "--disparities", 32, *more, f"{option}={value}", mentions=[option])
+    for mode, option, value in (("smooth", "--window", 9), ("smooth", "--texture", 2), ("census", "--texture", 1),
                                 ("ssd", "--texture", 1), ("sad8", "--window", 13), ("census", "--window", 300)):
         refuse_pair(f"{option} {value} in {mode}", "--disparities", 32, "--mode", mode, option, value,
                     mentions=[option, "takes" if mode == "census" and option == "--window" else mode])
     refuse("too low for smooth", low, low, "--disparities", 16, "--mode", "smooth", "-o", out, mentions=["--mode", "7 rows"])
     refuse_pair("unknown option", "--disparities", 32, "--fast", mentions=["--fast"])
+    refuse_pair("misspelt option", "--disparites", 32, mentions=["'--disparites' is not an option"])
+    for option, value, step in (("--speckle-size", 70, "speckle"), ("--speckle-difference", 2, "speckle"),
+                                ("--diffusion-iterations", 3, "diffusion"), ("--diffusion-edge", 2, "diffusion")):
+        refuse_pair(f"{option} without its filter", "--disparities", 32, option, value, mentions=[option, step])
     refuse("other size", left, scene / "right320/000.pgm", "--disparities", 32, "-o", out,
            mentions=["right320", "size", "320x240", "160x120"], left=[out])
     refuse("too low for the window", low, low, "--disparities", 16, "-o", out, mentions=["--window"], left=[out])
@@ -163,6 +169,8 @@ def bad_input(scene, folder):
     refuse("picture of another format", *pair, "--disparities", 32, "--png", folder / "p.jpg", mentions=["--png"])
     refuse("output twice", left, right, "--disparities", 32, "-o", picture, "--png", folder / "../" / folder.name /
            "out.png", mentions=["--png"], left=[picture])
+    refuse("output twice, one name with a folder", left, right, "--disparities", 32, "-o", picture.name, "--png",
+           f"./{picture.name}", mentions=["--png", "--out"])
     before = (folder / "r.png").read_bytes()
     refuse("output over the input", folder / "l.pgm", folder / "r.png", "--disparities", 16, "-o", folder / "r.png",
            mentions=["r.png", "--out"])

@@ -102,6 +102,11 @@ void print_json(const FloatImage &map, const MapQuality &quality)
 
 void print_text(const FloatImage &map, const MapQuality &quality)
 {
+    if (quality.valid == 0) {
+        std::printf("%dx%d, %zu px known, none of them valid: nothing to judge\n", map.width, map.height,
+                    quality.known);
+        return;
+    }
     std::printf("%dx%d, %zu px known, %.1f %% of them valid\n", map.width, map.height, quality.known,
                 100 * quality.density());
     std::printf("within   ");
@@ -132,8 +137,9 @@ int compare(const CompareOptions &options)
     expect_size(options.truth, truth.width, truth.height, map, options.map);
     const std::vector<bool> admitted = read_mask(options, map);
     if (count_known(truth, admitted) == 0) {
-        throw InputError(options.truth.string(), "pixels",
-                         admitted.empty() ? "no disparity is known" : "no disparity is known where the mask is 255");
+        throw InputError(admitted.empty() ? options.truth.string() : options.mask.string(), "pixels",
+                         admitted.empty() ? "no disparity is known"
+                                          : "no disparity is known where it is 255, in " + options.truth.string());
     }
     const MapQuality quality = judge_map(map, truth, admitted, options.range_px);
     if (!(quality.range_px > 0)) {

@@ -17,6 +17,7 @@
 #include "match_options.h"
 #include "tsr/host/colour_map.h"
 #include "tsr/host/input_error.h"
+#include "tsr/host/output_files.h"
 #include "tsr/stereo/disparity_file.h"
 
 namespace tsr
@@ -25,13 +26,6 @@ namespace
 {
 
 using Json = nlohmann::ordered_json;
-namespace fs = std::filesystem;
-
-bool is_same_file(const fs::path &a, const fs::path &b)
-{
-    std::error_code error;
-    return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error) && !error;
-}
 
 /* Before anything is read: outputs that would destroy an input or each other. */
 void check_outputs(const MatchOptions &options)
@@ -44,18 +38,9 @@ void check_outputs(const MatchOptions &options)
     if (!options.picture.empty() && options.picture.extension() != ".png") {
         throw InputError(options.picture.string(), "--png", "the name does not end in .png");
     }
-    const fs::path inputs[] = {options.left, options.right};
-    for (const fs::path &input : inputs) {
-        if (is_same_file(options.out, input)) {
-            throw InputError(options.out.string(), "--out", "is an input");
-        }
-        if (!options.picture.empty() && is_same_file(options.picture, input)) {
-            throw InputError(options.picture.string(), "--png", "is an input");
-        }
-    }
-    if (!options.picture.empty() && is_same_file(options.picture, options.out)) {
-        throw InputError(options.picture.string(), "--png", "is the same file as --out");
-    }
+    const OutputFile outputs[] = {{options.out, "--out"}, {options.picture, "--png"}};
+    const std::filesystem::path inputs[] = {options.left, options.right};
+    check_output_files(outputs, inputs);
 }
 
 GrayImage read_right(const MatchOptions &options, const ImageSize &size)
@@ -96,16 +81,27 @@ void write_outputs(const MatchOptions &options, const StereoResult &result, cons
     write_disparity_file(options.out, view_disparity(result, config));
 }
 
+/* A test that is off is null. */
+Json test_value(std::uint8_t value)
+{
+    return value == TSR_MATCH_TEST_OFF ? Json(nullptr) : Json(value);
+}
+
 void print_json(const MatchOptions &options, const StereoPipeline &pipeline, const StereoResult &result)
 {
     const tsr_match_config &config = pipeline.match_config();
+    const bool has_texture = config.mode == TSR_MATCH_SAD || config.mode == TSR_MATCH_SAD8;
     const std::size_t pixels = result.disparity_q4.size();
     const Json json = {{"width", config.width},
                        {"height", config.height},
                        {"disparities", config.disparities},
                        {"search_start_px", config.search_start_px},
-                       {"window", config.window},
                        {"mode", options.mode},
+                       {"kernel", tsr_match_kernel_name(config.kernel)},
+                       {"window", config.mode == TSR_MATCH_SMOOTH ? Json(nullptr) : Json(config.window)},
+                       {"uniqueness_percent", test_value(config.uniqueness_percent)},
+                       {"texture_min", has_texture ? test_value(config.texture_min) : Json(nullptr)},
+                       {"lr_tolerance_px", test_value(config.lr_tolerance_px)},
                        {"refine", refine_steps(options)},
                        {"density", density_of(result)},
                        {"match_ms", result.match_ms},
@@ -121,9 +117,10 @@ void print_json(const MatchOptions &options, const StereoPipeline &pipeline, con
 void print_text(const MatchOptions &options, const StereoPipeline &pipeline, const StereoResult &result)
 {
     const tsr_match_config &config = pipeline.match_config();
-    std::printf("%s: %ux%u, %.1f %% valid, match %.1f ms, refine %.1f ms, scratch %zu and %zu bytes\n",
+    std::printf("%s: %ux%u, %.1f %% valid, match %.1f ms (%s), refine %.1f ms, scratch %zu and %zu bytes\n",
                 options.out.c_str(), config.width, config.height, 100 * density_of(result), result.match_ms,
-                result.refine_ms, pipeline.match_scratch_len(), pipeline.refine_scratch_len());
+                tsr_match_kernel_name(config.kernel), result.refine_ms, pipeline.match_scratch_len(),
+                pipeline.refine_scratch_len());
 }
 
 int match(const MatchOptions &options)

@@ -132,7 +132,7 @@ void read_mode(const MatchOptions &options, const Mode &mode, tsr_match_config &
     if (options.window && mode.window == nullptr) {
         throw InputError("command line", "--window", "mode " + std::string(mode.name) + " has a window of its own");
     }
-    if (options.texture && !mode.has_texture) {
+    if (options.texture && !mode.has_texture && *options.texture != "off") {
         throw InputError("command line", "--texture", "mode " + std::string(mode.name) + " has no test of texture");
     }
     if (options.window) {
@@ -142,6 +142,16 @@ void read_mode(const MatchOptions &options, const Mode &mode, tsr_match_config &
         config.window = static_cast<std::uint8_t>(*options.window);
     }
     config.texture_min = options.texture ? read_test(*options.texture, "texture_min") : std::uint8_t{0};
+}
+
+/* Whether an option of a filter was given, which that filter must then be there for. */
+template <typename T>
+bool is_given(const std::optional<T> &option, const char *name, const std::vector<std::string> &steps, const char *step)
+{
+    if (option && std::find(steps.begin(), steps.end(), step) == steps.end()) {
+        throw InputError("command line", name, std::string("--refine has no ") + step);
+    }
+    return option.has_value();
 }
 
 tsr_refine_config read_refine(const MatchOptions &options)
@@ -154,11 +164,26 @@ tsr_refine_config read_refine(const MatchOptions &options)
     for (std::size_t i = 0; i < steps.size(); i++) {
         config.steps[i] = static_cast<std::uint8_t>(find_name(kSteps, steps[i], "--refine").step);
     }
-    config.speckle.min_size = narrow<std::uint16_t>(options.speckle_size, "min_size");
-    config.speckle.max_difference_q4 = sixteenths<std::uint16_t>(options.speckle_difference_px, "max_difference_q4");
-    config.diffusion.iterations = narrow<std::uint8_t>(options.diffusion_iterations, "iterations");
-    config.diffusion.edge_q4 = sixteenths<std::uint8_t>(options.diffusion_edge_px, "edge_q4");
+    if (is_given(options.speckle_size, "--speckle-size", steps, "speckle")) {
+        config.speckle.min_size = narrow<std::uint16_t>(*options.speckle_size, "min_size");
+    }
+    if (is_given(options.speckle_difference_px, "--speckle-difference", steps, "speckle")) {
+        config.speckle.max_difference_q4 =
+            sixteenths<std::uint16_t>(*options.speckle_difference_px, "max_difference_q4");
+    }
+    if (is_given(options.diffusion_iterations, "--diffusion-iterations", steps, "diffusion")) {
+        config.diffusion.iterations = narrow<std::uint8_t>(*options.diffusion_iterations, "iterations");
+    }
+    if (is_given(options.diffusion_edge_px, "--diffusion-edge", steps, "diffusion")) {
+        config.diffusion.edge_q4 = sixteenths<std::uint8_t>(*options.diffusion_edge_px, "edge_q4");
+    }
     return config;
+}
+
+std::string without_blanks(std::string text)
+{
+    std::erase(text, ' ');
+    return text;
 }
 
 } // namespace
@@ -167,8 +192,10 @@ void declare_match_options(CLI::App &command, MatchOptions &options)
 {
     command.add_option("left", options.left, "left picture, rectified: PGM, PNG or JPEG")->required();
     command.add_option("right", options.right, "right picture, of the same size")->required();
-    command.add_option("--disparities", options.disparities, "searched disparities, px")->required();
-    command.add_option("--window", options.window, "side of the window, px; 9 unless told, smooth has its own");
+    command.add_option("--disparities", options.disparities, "searched disparities, px: 16 .. 128, a multiple of 8")
+        ->required();
+    command.add_option("--window", options.window,
+                       "side of the window, px: odd, 5 .. 15, in sad8 up to 11; 9 unless told, smooth has its own");
     command.add_option("--mode", options.mode, "sad, sad8, census, smooth, raw or ssd")->capture_default_str();
     command
         .add_option("--refine", options.refine,
@@ -176,15 +203,15 @@ void declare_match_options(CLI::App &command, MatchOptions &options)
                     "gaussian5 diffusion")
         ->capture_default_str();
     command.add_option("--search-start", options.search_start, "first disparity searched, px")->capture_default_str();
-    command.add_option("--uniqueness", options.uniqueness, "percent, or off; 15 unless told, in smooth 25, in ssd 30");
-    command.add_option("--texture", options.texture, "least texture, or off, in sad and sad8; 1 unless told");
-    command.add_option("--lr", options.lr, "left-right tolerance, px, or off")->capture_default_str();
-    command.add_option("--speckle-size", options.speckle_size, "smallest island kept, px")->capture_default_str();
-    command.add_option("--speckle-difference", options.speckle_difference_px, "largest step inside an island, px")
-        ->capture_default_str();
-    command.add_option("--diffusion-iterations", options.diffusion_iterations, "how often")->capture_default_str();
-    command.add_option("--diffusion-edge", options.diffusion_edge_px, "what counts as an edge, px")
-        ->capture_default_str();
+    command.add_option("--uniqueness", options.uniqueness,
+                       "1 .. 100 percent, or off; 15 unless told, in smooth 25, in ssd 30");
+    command.add_option("--texture", options.texture, "1 .. 127, or off, in sad and sad8; 1 unless told");
+    command.add_option("--lr", options.lr, "left-right tolerance, 1 .. 127 px, or off")->capture_default_str();
+    command.add_option("--speckle-size", options.speckle_size, "smallest island kept, 2 .. 4096 px; 50 unless told");
+    command.add_option("--speckle-difference", options.speckle_difference_px,
+                       "largest step inside an island, px; 1 unless told");
+    command.add_option("--diffusion-iterations", options.diffusion_iterations, "1 .. 100; 5 unless told");
+    command.add_option("--diffusion-edge", options.diffusion_edge_px, "what counts as an edge, px; 1 unless told");
     command.add_option("-o,--out", options.out, "the map: .pfm, or .png of 16 bits, px = value / 256")->required();
     command.add_option("--png", options.picture, "the map in colours, a PNG to look at");
     command.add_flag("--json", options.json, "print JSON");
@@ -192,12 +219,16 @@ void declare_match_options(CLI::App &command, MatchOptions &options)
 
 std::vector<std::string> refine_steps(const MatchOptions &options)
 {
+    const std::string refine = without_blanks(options.refine);
     std::vector<std::string> steps;
     std::size_t begin = 0;
-    while (options.refine != "none" && begin <= options.refine.size()) {
-        const std::size_t end = std::min(options.refine.find(',', begin), options.refine.size());
-        steps.push_back(options.refine.substr(begin, end - begin));
+    while (refine != "none" && begin <= refine.size()) {
+        const std::size_t end = std::min(refine.find(',', begin), refine.size());
+        steps.push_back(refine.substr(begin, end - begin));
         begin = end + 1;
+    }
+    if (steps.size() > 1 && std::find(steps.begin(), steps.end(), "none") != steps.end()) {
+        throw InputError("command line", "--refine", "'none' stands alone");
     }
     return steps;
 }

@@ -33,10 +33,10 @@ struct MatchOptions {
     std::optional<std::string> uniqueness;
     std::optional<std::string> texture;
     std::string lr = "1";
-    int speckle_size = 50;
-    double speckle_difference_px = 1;
-    int diffusion_iterations = 5;
-    double diffusion_edge_px = 1;
+    std::optional<int> speckle_size;
+    std::optional<double> speckle_difference_px;
+    std::optional<int> diffusion_iterations;
+    std::optional<double> diffusion_edge_px;
     bool json = false;
 };
 

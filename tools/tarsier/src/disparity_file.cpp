@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <stdexcept>
 
@@ -52,7 +53,8 @@ GrayImage16 png_of_float(const FloatImage &map)
 
 DisparityFormat disparity_format(const std::filesystem::path &file, const char *field)
 {
-    const auto ending = file.extension();
+    std::string ending = file.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
     if (ending != ".pfm" && ending != ".png") {
         throw InputError(file.string(), field, "the name ends in neither .pfm nor .png");
     }

@@ -10,6 +10,7 @@
 #include "tsr/host/atomic_file.h"
 #include "tsr/host/calibration.h"
 #include "tsr/host/input_error.h"
+#include "tsr/host/output_files.h"
 #include "tsr/host/rectification.h"
 #include "tsr/host/rectify_table.h"
 
@@ -101,10 +102,17 @@ void print_toml(const StereoCalibration &calibration, const Rectification &recti
 void write_rectify_table(const RectifyTableOptions &options)
 {
     const RectifyOptions chosen = rectify_options(options);
+    const OutputFile outputs[] = {{options.table, "--out"}, {options.c_header, "--c-header"}};
+    check_output_files(outputs, options.calibration);
     CalibrationUnits units;
     units.size = parse_size(options.calibrated, "--calibrated");
     units.unit_mm = options.unit_mm;
     const StereoCalibration calibration = read_calibration(options.calibration, units);
+    if (!options.calibrated.empty() && calibration.left.size != units.size) {
+        throw InputError("command line", "--calibrated",
+                         calibration.file + " says " + std::to_string(calibration.left.size.width) + "x" +
+                             std::to_string(calibration.left.size.height));
+    }
     const Rectification rectification = rectify_calibration(calibration, chosen);
     const RectifyTable table = make_rectify_table(rectification, options.step, calibration.file);
     if (!options.c_header.empty()) {

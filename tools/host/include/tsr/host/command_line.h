@@ -21,6 +21,9 @@ struct Program {
     std::function<int()> run; /* after the command line was read */
 };
 
+/* Refuses what is not a number above 0. */
+CLI::Validator above_zero();
+
 /* Reads the command line and runs: 0, or 2 with one line on stderr for what
  * the user gave wrong, 1 for everything else (input_error.h). */
 int run_command_line(const Program &program, int argc, char **argv);
