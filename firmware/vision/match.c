@@ -23,7 +23,6 @@
 
 #define DISPARITIES_DEFAULT 32
 #define WINDOW_DEFAULT 9
-#define WINDOW_MIN 5
 #define CAP_MAX 7         /* prefiltered pixels 0 .. 2 cap fit 4 bits: a vector kernel looks differences up */
 #define CAP_ROOM 63       /* cap * window <= 63: column sums of 2 cap, and their differences, fit 8 bits with a sign */
 #define SAD8_CAP_ROOM 127 /* cap * window^2 <= 127: window sums fit 8 bits */
@@ -47,6 +46,12 @@ static uint8_t cap_max(const struct tsr_match_config *config)
     int by_window = SAD8_CAP_ROOM / (config->window * config->window);
     int cap = by_columns < CAP_MAX ? by_columns : CAP_MAX;
     return (uint8_t)(config->mode == TSR_MATCH_SAD8 && by_window < cap ? by_window : cap);
+}
+
+/* The modes with prefilter, cap and test of texture. */
+static bool is_prefiltered(const struct tsr_match_config *config)
+{
+    return config->mode == TSR_MATCH_SAD || config->mode == TSR_MATCH_SAD8;
 }
 
 static bool is_census(const struct tsr_match_config *config)
@@ -88,30 +93,32 @@ static const char *bad_field(const struct tsr_match_config *config)
     if (config->width < TSR_MATCH_DISPARITIES_MIN || config->width > TSR_IMAGE_WIDTH_MAX) {
         return "width";
     }
-    if (config->height < WINDOW_MIN || config->height > TSR_IMAGE_HEIGHT_MAX) {
+    if (config->height < TSR_MATCH_WINDOW_MIN || config->height > TSR_IMAGE_HEIGHT_MAX) {
         return "height";
     }
     if (config->disparities < TSR_MATCH_DISPARITIES_MIN || config->disparities > TSR_DISPARITY_COUNT_MAX ||
         config->disparities % TSR_MATCH_LANES != 0 || config->disparities > config->width) {
         return "disparities";
     }
-    if (config->window < WINDOW_MIN || config->window > TSR_MATCH_WINDOW_MAX || config->window % 2 == 0 ||
-        config->window > config->height) {
-        return "window";
-    }
     if (config->mode > TSR_MATCH_SSD) {
         return "mode";
     }
-    if (cap_max(config) == 0) {
+    if (config->window > config->height) {
+        return config->mode == TSR_MATCH_SMOOTH ? "height" : "window"; /* smooth's window is not the caller's */
+    }
+    if (config->window < TSR_MATCH_WINDOW_MIN || config->window > TSR_MATCH_WINDOW_MAX || config->window % 2 == 0) {
         return "window";
     }
-    if (config->prefilter_cap > cap_max(config)) {
+    if (is_prefiltered(config) && cap_max(config) == 0) {
+        return "window";
+    }
+    if (is_prefiltered(config) && config->prefilter_cap > cap_max(config)) {
         return "prefilter_cap";
     }
     if (is_above(config->uniqueness_percent, UNIQUENESS_MAX)) {
         return "uniqueness_percent";
     }
-    if (is_above(config->texture_min, TEST_MAX)) {
+    if (is_prefiltered(config) && is_above(config->texture_min, TEST_MAX)) {
         return "texture_min";
     }
     if (is_above(config->lr_tolerance_px, TEST_MAX)) {
@@ -301,7 +308,7 @@ enum tsr_status tsr_match_start_sad(struct tsr_match *match, const struct tsr_ma
                                     struct tsr_gray left, struct tsr_gray right, uint16_t *map, size_t map_cap,
                                     uint8_t *scratch, size_t scratch_cap)
 {
-    if (config != NULL && config->mode > TSR_MATCH_SAD8) {
+    if (config != NULL && !is_prefiltered(config)) {
         return TSR_ERR_ARG;
     }
     return start(match, config, left, right, map, map_cap, scratch, scratch_cap, &method_sad);

@@ -146,7 +146,8 @@ def bad_input(scene, folder):
                                 ("ssd", "--texture", 1), ("sad8", "--window", 13), ("census", "--window", 300)):
         refuse_pair(f"{option} {value} in {mode}", "--disparities", 32, "--mode", mode, option, value,
                     mentions=[option, "takes" if mode == "census" and option == "--window" else mode])
-    refuse("too low for smooth", low, low, "--disparities", 16, "--mode", "smooth", "-o", out, mentions=["--mode", "7 rows"])
+    refuse("too low for smooth", low, low, "--disparities", 16, "--mode", "smooth", "-o", out,
+           mentions=["low.pgm", "6 rows", "smooth"])
     refuse_pair("unknown option", "--disparities", 32, "--fast", mentions=["--fast"])
     refuse_pair("misspelt option", "--disparites", 32, mentions=["'--disparites' is not an option"])
     for option, value, step in (("--speckle-size", 70, "speckle"), ("--speckle-difference", 2, "speckle"),

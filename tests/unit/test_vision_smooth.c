@@ -149,6 +149,9 @@ static void test_scratch_is_used_to_the_last_byte_and_no_further(void)
     }
     struct tsr_match_config smooth = {.width = 160, .height = 120, .disparities = 32, .mode = TSR_MATCH_SMOOTH};
     TEST_ASSERT_EQUAL(27624, tsr_match_scratch_len(&smooth));
+    TEST_ASSERT_EQUAL(27624, TSR_MATCH_SMOOTH_SCRATCH_LEN(160, 32));
+    struct tsr_match_config census = {.width = 161, .height = 120, .disparities = 24, .mode = TSR_MATCH_CENSUS};
+    TEST_ASSERT_EQUAL(TSR_MATCH_CENSUS_SCRATCH_LEN(161, 24, 9), tsr_match_scratch_len(&census));
     TEST_ASSERT_EQUAL(39680, tsr_match_pair_len(&smooth));
 }
 
@@ -178,7 +181,12 @@ static void test_least_sizes(void)
     smooth.height = 6;
     const char *field = NULL;
     TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_match_check(&smooth, &field));
-    TEST_ASSERT_EQUAL_STRING("window", field);
+    TEST_ASSERT_EQUAL_STRING("height", field);
+    census.window = 15;
+    census.height = 16;
+    census.prefilter_cap = 7; /* not one for SAD with that window, and not looked at */
+    census.texture_min = 200;
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_match_check(&census, &field));
 }
 
 static void test_refuses_modes_without_code(void)

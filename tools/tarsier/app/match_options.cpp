@@ -119,9 +119,6 @@ const typename Table::value_type &find_name(const Table &table, const std::strin
 
 [[noreturn]] void refuse_window(const Mode &mode)
 {
-    if (mode.window == nullptr) {
-        throw InputError("command line", "--mode", "smooth takes pictures of at least 7 rows");
-    }
     throw InputError("command line", "--window", std::string("takes ") + mode.window);
 }
 
@@ -257,6 +254,10 @@ StereoOptions read_match_options(const MatchOptions &options, const ImageSize &s
     if (const std::string field = StereoPipeline::bad_field(stereo); !field.empty()) {
         if (field == "window") {
             refuse_window(mode);
+        }
+        if (field == "height") {
+            throw InputError(options.left.string(), "size",
+                             std::to_string(size.height) + " rows, mode smooth takes at least 7");
         }
         refuse(field);
     }

@@ -1,5 +1,7 @@
 /*
- * Stereo matching of a rectified pair by the sum of absolute differences.
+ * Stereo matching of a rectified pair. The matcher consumes its frames: copy them
+ * if they are needed afterwards. Of the modes (enum tsr_match_mode) the default is
+ * TSR_MATCH_SAD, the sum of absolute differences:
  *
  *   P(x,y)   = clip(round(x-Sobel / 4)) + cap, 0 .. 2 cap     docs/math.md, eq. (10)
  *   A(x,y,d) = |P_left(x,y) - P_right(clip(x - s - d), y)|    eq. (11)
@@ -29,8 +31,10 @@
 #include "tsr/base/image.h"
 #include "tsr/base/status.h"
 
+#define TSR_MATCH_WINDOW_MIN 5
 #define TSR_MATCH_WINDOW_MAX 15
 #define TSR_MATCH_DISPARITIES_MIN 16
+#define TSR_MATCH_DISPARITIES_MAX TSR_DISPARITY_COUNT_MAX
 #define TSR_MATCH_SCRATCH_ALIGN 4
 /* Switches the uniqueness, texture or left-right test off. */
 #define TSR_MATCH_TEST_OFF UINT8_C(255)
@@ -52,15 +56,15 @@ struct tsr_match_method;
 /* Zero in a field means the default named beside it. */
 struct tsr_match_config {
     uint16_t width;             /* px, disparities .. TSR_IMAGE_WIDTH_MAX; no default */
-    uint16_t height;            /* px, window .. TSR_IMAGE_HEIGHT_MAX; no default */
+    uint16_t height;            /* px, window (in smooth 7) .. TSR_IMAGE_HEIGHT_MAX; no default */
     uint16_t disparities;       /* D, searched disparities, 16 .. 128, a multiple of 8; default 32 */
-    uint8_t window;             /* px, odd, 5 .. 15; default 9; smooth does not use it (it becomes 7) */
+    uint8_t window;             /* px, odd, 5 .. 15, in SAD8 .. 11; default 9; smooth has its own and ignores it */
     uint8_t mode;               /* enum tsr_match_mode; default TSR_MATCH_SAD */
-    uint8_t prefilter_cap;      /* 1 .. 7, <= 63 / window (2 cap window <= 127), with SAD8 <= 127 / window^2; default
-                                   the largest */
+    uint8_t prefilter_cap;      /* of SAD and SAD8: 1 .. 7, <= 63 / window (2 cap window <= 127), in SAD8 <= 127 /
+                                   window^2; default the largest; others ignore it */
     uint8_t uniqueness_percent; /* 1 .. 100, or off; default 15, in smooth 25, in ssd 30 */
-    uint8_t texture_min;        /* least sum of |P_left - cap| over the window, in units of window px, 1 .. 127, or
-                                   off; default 1 */
+    uint8_t texture_min;        /* of SAD and SAD8: least sum of |P_left - cap| over the window, in units of window px,
+                                   1 .. 127, or off; default 1; others ignore it */
     uint8_t lr_tolerance_px;    /* 1 .. 127, or off; default 1 */
     int16_t search_start_px;    /* s, -(width - disparities) .. width - disparities; default 0 */
     const struct tsr_match_kernel *kernel; /* kept; default tsr_match_kernel_at(0) */
@@ -90,10 +94,15 @@ struct tsr_match {
  * ("config" for a null config). *field is a static string. */
 enum tsr_status tsr_match_check(const struct tsr_match_config *config, const char **field);
 
-/* Scratch bytes of the SAD modes, from resolved values, and of any from a configuration (0 if it does
- * not check): column sums, five rows of bytes, and room to work on one pixel. */
+/* Scratch bytes of the SAD modes, of census and of smooth, from resolved values: column sums, or costs and paths, and
+ * rows. The function gives those of any configuration, 0 if it does not check. */
 #define TSR_MATCH_SCRATCH_LEN(width, disparities)                                                                      \
     ((size_t)(width) * ((size_t)(disparities) + 5u) + 4u * (size_t)(disparities) + 8u)
+#define TSR_MATCH_CENSUS_SCRATCH_LEN(width, disparities, window)                                                       \
+    (TSR_MATCH_SCRATCH_LEN(width, disparities) +                                                                       \
+     ((size_t)(window) + 1u) * 2u * (2u * (size_t)(width) + (size_t)(disparities)))
+#define TSR_MATCH_SMOOTH_SCRATCH_LEN(width, disparities)                                                               \
+    ((size_t)(width) * (5u * (size_t)(disparities) + 11u) + 8u * (size_t)(disparities) + 8u)
 size_t tsr_match_scratch_len(const struct tsr_match_config *config);
 
 /*
@@ -129,8 +138,8 @@ uint16_t *tsr_match_pair_map(uint8_t *pair);
  *   left, right  [height][width] gray, consumed: the content is destroyed by run.
  *                Kept until run returns TSR_OK. They do not share bytes (their
  *                rows may interleave).
- *   map          [height][width] out, px, UQ12.4, 0 .. 16 (D - 1), or
- *                TSR_DISPARITY_INVALID; aligned to 2. Apart from the frames, or
+ *   map          [height][width] out, px, UQ12.4, 0 .. 16 (D - 1), counted from
+ *                search_start_px on, or TSR_DISPARITY_INVALID; aligned to 2. Apart from the frames, or
  *                overlaying them so that row y of the map ends where row
  *                y - window/2 of either frame begins, or before (the pair layout).
  *   map_cap      elements available in map, >= width * height
@@ -158,14 +167,13 @@ enum tsr_status tsr_match_start_sad(struct tsr_match *match, const struct tsr_ma
 /*
  * Continue for at most rows rows of work, of tsr_match_rows_total() in all:
  *
- * in the SAD mode
+ *   SAD, SAD8          height prefilter rows, window/2 warm-up rows, height matched rows
+ *   smooth             1 warm-up row, height matched rows
+ *   others             window/2 warm-up rows, height matched rows
  *
- *   height      prefilter rows, each about 52 instructions per pixel (both frames)
- *   window/2    warm-up rows, each about 15 per pixel and disparity
- *   height      matched rows, each about 48 per pixel and disparity
- *
- * (portable kernel, Cortex-M4, -O3, D = 32; larger D cost less per disparity, the
- * DSP kernel about a quarter: docs/performance.md).
+ * A row of work is bounded by that of matched rows: with D = 32, in instructions
+ * per pixel and disparity of a Cortex-M4, 9 (SAD, SAD8), 45 (census) or 38 (smooth)
+ * with the DSP kernel, 50, 110 or 195 in portable C; docs/performance.md has more.
  *
  * The result does not depend on how the rows are divided among calls. Matched
  * row y of the map is final as soon as it is done.
