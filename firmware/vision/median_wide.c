@@ -1,7 +1,7 @@
 /*
- * 5x5 median, from a window that slides along the row: its values stay in
- * ascending order while the column at its right end enters and the one at its
- * left end leaves.
+ * 5x5 median for microcontrollers, from a window that slides along the row: its
+ * values stay in ascending order while the column at its right end enters and the
+ * one at its left end leaves.
  *
  * Scratch holds the two rows above as they were, each at its parity. Row y takes
  * the place of row y - 2 behind the window, where that one is not read any more.
@@ -9,6 +9,8 @@
  * SPDX-License-Identifier: Apache-2.0
  */
 #include "median_wide.h"
+
+#ifdef TSR_MEDIAN_SLIDES
 
 #include <stdbool.h>
 
@@ -128,3 +130,4 @@ void tsr_median_filter_wide_row(const struct tsr_median *median, unsigned y)
         }
     }
 }
+#endif
