@@ -296,8 +296,15 @@ INLINE void keep_least16(vec16 a, int16_t *kept)
     _mm_storeu_si32(kept, found);
 }
 
-INLINE void find_least16(const int16_t *kept, vec16 *least, vec16 *lane)
+INLINE unsigned least_lanes(unsigned vectors)
 {
+    (void)vectors;
+    return 8;
+}
+
+INLINE void find_least16(const int16_t *kept, unsigned lanes_count, vec16 *least, vec16 *lane)
+{
+    (void)lanes_count;
     __m256i low = load16(kept);
     __m256i high = load16(kept + 16);
     __m256i leasts = _mm256_packs_epi32(_mm256_srai_epi32(_mm256_slli_epi32(low, 16), 16),

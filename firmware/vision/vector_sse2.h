@@ -32,9 +32,11 @@
  *   pair_lanes(a)                lanes in order to the order of LANE_PAIR
  *   first_times16, second_times16(a)     16 times the bytes with a sign
  *   keep_least16(a, kept)        into KEPT_LANES of 16 bits, aligned, what the next one needs
- *   find_least16(kept, &least, &lane)    of VECTOR_LEN / 2 vectors so kept, in the order
+ *   least_lanes(vectors)         lanes that are told apart where a pixel has so many vectors
+ *                                of bytes: a power of two, at least an eighth of all / 2
+ *   find_least16(kept, lanes, &least, &lane)     of VECTOR_LEN / 2 vectors so kept, in the order
  *                                of lanes: the least number, plus 2^15, and the
- *                                first lane modulo 8 that has it
+ *                                first lane modulo lanes that has it
  *
  * Where lanes are widened a vector of bytes becomes two: lanes first to
  * first + VECTOR_LEN / 2 - 1 and the others. With LANE_PAIR = 1 they are lanes in
