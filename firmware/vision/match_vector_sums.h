@@ -200,19 +200,18 @@ INLINE void find_bounds(struct shape shape, unsigned from, unsigned percent, str
     }
 }
 
-INLINE void count_of_pixel(struct shape shape, const int16_t *keys, size_t x, struct winners *winners)
+/* 0 less how many keys are below the bound, in any lanes. */
+INLINE vec16 count_of_pixel(struct shape shape, const int16_t *keys, size_t x, struct winners *winners)
 {
     vec16 bound = load_splat16(winners->bound + x);
-    vec8 within[VECTORS_MAX];
-    for (unsigned j = 0; j < shape.vectors; j++) {
-        vec16 first = above16(bound, load16(keys + j * VECTOR_LEN));
-        vec16 second = above16(bound, load16(keys + j * VECTOR_LEN + LANES16));
-        within[j] = join8(first, second);
+    vec16 within = above16(bound, load16(keys));
+    for (unsigned i = 1; i < 2u * shape.vectors; i++) {
+        within = add16(within, above16(bound, load16(keys + i * LANES16)));
     }
-    keep_count8(within, shape.vectors, winners->counts + x * KEPT_COUNTS);
     const int16_t *own = keys + winners->d[x];
     winners->below[x] = own[-1];
     winners->above[x] = own[1];
+    return within;
 }
 
 /* A whole block: the counts of pixels behind the row's end are not used. */
@@ -220,8 +219,9 @@ INLINE void count_within(struct shape shape, int16_t *block, unsigned from, stru
 {
     for (size_t i = 0; i < BLOCK; i += 2) {
         const int16_t *keys = keys_at(block, shape, (unsigned)i);
-        count_of_pixel(shape, keys, from + i, winners);
-        count_of_pixel(shape, keys + (shape.vectors * VECTOR_LEN + KEY_PAD), from + i + 1u, winners);
+        vec16 first = count_of_pixel(shape, keys, from + i, winners);
+        vec16 second = count_of_pixel(shape, keys + (shape.vectors * VECTOR_LEN + KEY_PAD), from + i + 1u, winners);
+        keep_counts16(first, second, winners->counts + (from + i) * KEPT_COUNTS);
     }
 }
 
