@@ -1,6 +1,6 @@
 /*
  * Vectors of 32 bytes on x86-64 with AVX2, as vector_sse2.h describes them.
- * Included where the compiler may use "avx2,popcnt".
+ * Included where the compiler may use "avx2".
  *
  * SPDX-License-Identifier: Apache-2.0
  */
