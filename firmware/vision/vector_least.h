@@ -9,7 +9,7 @@
 
 #define KEPT_LANES 8u
 
-/* D / 16 lanes, or up to the next power of two: the others are folded into them before they are told apart. */
+/* The others are folded into them while lanes are zipped. */
 INLINE unsigned least_lanes(unsigned vectors)
 {
     return vectors <= 2u ? vectors : vectors <= 4u ? 4u : 8u;

@@ -23,16 +23,16 @@
  *   spread_least8(a)             the least byte, unsigned, in every byte
  *   first_byte8(a)
  *   above16(a, b), equal16       lanes of ones where a > b, signed; where equal
- *   keep_counts16(a, b, kept)    into 2 KEPT_COUNTS of 16 bits, aligned: 0 less the sums of
- *                                all lanes of a and of b, where each is in -128 .. 0
- *   find_counts16(kept)          those of VECTOR_LEN / 2 vectors
+ *   keep_counts16(a, b, kept)    into 2 KEPT_COUNTS of 16 bits, aligned, what the next one needs;
+ *                                lanes in -128 .. 0 and at most 255 in all
+ *   find_counts16(kept)          of VECTOR_LEN / 2 vectors so kept, 0 less the sum of their lanes
  *   probe_index8(a)              of nibbles in bytes, what probe4() takes
  *   probe_difference4(probe4(i), a)      |n - a|, where i is the index of n
  *   pair_lanes(a)                lanes in order to the order of LANE_PAIR
  *   first_times16, second_times16(a)     16 times the bytes with a sign
  *   keep_least16(a, kept)        into KEPT_LANES of 16 bits, aligned, what the next one needs
  *   least_lanes(vectors)         lanes that are told apart where a pixel has so many vectors
- *                                of bytes: a power of two, at least an eighth of all / 2
+ *                                of bytes: a power of two, and D <= 16 times that
  *   find_least16(kept, lanes, &least, &lane)     of VECTOR_LEN / 2 vectors so kept, in the order
  *                                of lanes: the least number, plus 2^15, and the
  *                                first lane modulo lanes that has it
