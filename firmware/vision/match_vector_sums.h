@@ -204,9 +204,10 @@ INLINE void find_bounds(struct shape shape, unsigned from, unsigned percent, str
 INLINE vec16 count_of_pixel(struct shape shape, const int16_t *keys, size_t x, struct winners *winners)
 {
     vec16 bound = load_splat16(winners->bound + x);
-    vec16 within = above16(bound, load16(keys));
-    for (unsigned i = 1; i < 2u * shape.vectors; i++) {
-        within = add16(within, above16(bound, load16(keys + i * LANES16)));
+    vec16 within = splat16(0);
+    for (unsigned i = 0; i < shape.vectors; i++) {
+        const int16_t *at = keys + i * VECTOR_LEN;
+        within = add16(within, add16(above16(bound, load16(at)), above16(bound, load16(at + LANES16))));
     }
     const int16_t *own = keys + winners->d[x];
     winners->below[x] = own[-1];
