@@ -8,9 +8,9 @@
 #ifdef TSR_MATCH_HAS_X86
 
 #ifdef __clang__
-#pragma clang attribute push(__attribute__((target("avx2,popcnt"))), apply_to = function)
+#pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
 #else
-#pragma GCC target("avx2,popcnt")
+#pragma GCC target("avx2")
 #endif
 
 #include "vector_avx2.h"

@@ -22,7 +22,7 @@ const struct tsr_match_kernel tsr_match_kernel_portable = {
 #if defined(TSR_MATCH_HAS_X86)
 static bool has_avx2(void)
 {
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt");
+    return __builtin_cpu_supports("avx2");
 }
 #endif
 

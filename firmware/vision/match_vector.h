@@ -61,7 +61,7 @@ struct winners {
     _Alignas(32) int16_t below[PIXELS_MAX]; /* 16 S - 2^15 of d - 1, of d + 1; not negative if not to be chosen */
     _Alignas(32) int16_t above[PIXELS_MAX];
     _Alignas(32) int16_t bound[PIXELS_MAX];                /* what sums are below that eq. (15) counts */
-    _Alignas(32) int16_t counts[PIXELS_MAX * KEPT_COUNTS]; /* how many are: as keep_count8() gives it */
+    _Alignas(32) int16_t counts[PIXELS_MAX * KEPT_COUNTS]; /* how many are: as keep_counts16() gives it */
 };
 
 /* Columns start at a multiple of VECTOR_LEN: there is room for sums in front of them that vectors do not use. */

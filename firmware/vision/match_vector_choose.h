@@ -106,7 +106,7 @@ static void choose(const struct tsr_match_config *config, const struct winners *
         vec16 value = add16(SHIFT_LEFT16(d, 4), and16(offset_q4, inside));
         vec16 bound = load16(winners->bound + x);
         vec16 own = subtract16(subtract16(one, above16(bound, below_key)), above16(bound, above_key));
-        vec16 valid = unique_off ? splat16(-1) : equal16(find_count8(winners->counts + (size_t)x * KEPT_COUNTS), own);
+        vec16 valid = unique_off ? splat16(-1) : equal16(find_counts16(winners->counts + (size_t)x * KEPT_COUNTS), own);
         valid = and16(valid, load16(verdicts->textured + x));
         vec16 has_winner = and16(above16(found, splat16(-1)), above16(end, right));
         valid = and16(valid, has_winner);

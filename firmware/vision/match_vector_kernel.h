@@ -12,7 +12,7 @@
 
 INLINE void find_winners_of(const struct row_input *input, unsigned vectors, unsigned percent, struct winners *winners)
 {
-    struct shape shape = {vectors, false, vectors <= HELD_MAX};
+    struct shape shape = {vectors, false, vectors <= HELD_MAX, least_lanes(vectors)};
     if (input->disparities == vectors * VECTOR_LEN) {
         struct row_input same = *input;
         same.disparities = vectors * VECTOR_LEN;

@@ -148,7 +148,7 @@ static void begin_smooth_row(struct smooth_row *row)
     }
     for (unsigned d = 0; d < row->shape.vectors * VECTOR_LEN; d++) {
         bool is_candidate = (int)d < -row->start && d < row->disparities;
-        row->base[d] = (int16_t)((int)(d / 8u) + 16 * SUM_BIAS + (is_candidate ? INT16_MIN : 0));
+        row->base[d] = (int16_t)((int)(d / row->shape.lanes) + 16 * SUM_BIAS + (is_candidate ? INT16_MIN : 0));
     }
     uint8_t excess[VECTOR_LEN];
     for (unsigned i = 0; i < VECTOR_LEN; i++) {
@@ -171,7 +171,7 @@ static void find_smooth_winners(struct smooth_row *row, unsigned percent, struct
             move_candidates(row, from + i);
             sum_paths(row, from + i, keys_at(keys, row->shape, i), winners->kept + (size_t)(from + i) * KEPT_LANES);
         }
-        find_bounds(winners, from, percent);
+        find_bounds(row->shape, from, percent, winners);
         count_within(row->shape, keys, from, winners);
     }
 }
@@ -189,7 +189,7 @@ static void smooth_row(const struct tsr_match *match, unsigned y)
                              .width = config->width,
                              .disparities = config->disparities,
                              .start = config->search_start_px,
-                             .shape = {vectors, config->disparities % VECTOR_LEN != 0, false}};
+                             .shape = {vectors, config->disparities % VECTOR_LEN != 0, false, least_lanes(vectors)}};
     struct winners winners;
     struct verdicts verdicts;
     struct choices choices;

@@ -1,14 +1,15 @@
 /*
  * Window sums of a row in vectors of 16-bit keys, and the least of each pixel.
  *
- *     key = 16 S(x,y,d) + d / 8 - 2^15     where d is a candidate of pixel x
- *           16 S(x,y,d) + d / 8            where it is not
+ *     key = 16 S(x,y,d) + d / n - 2^15     where d is a candidate of pixel x
+ *           16 S(x,y,d) + d / n            where it is not
  *
  * S is at most 1890, so candidates have negative keys and no other lane wins or
  * comes near a bound. A pixel moves all keys by the column that enters the window
  * and the one that leaves it; lane d changes sides at x = s + d and s + d + W.
- * The least key of all vectors, lane by lane modulo 8, says d / 8, and the
- * lane says d % 8; the lowest d of equal sums is found first.
+ * n is 8, or less where 16 n > D serves: least_lanes(). The least key of all
+ * vectors, lane by lane modulo n, says d / n, and the lane says d % n; the lowest
+ * d of equal sums is found first.
  *
  * Keys of a block of pixels are kept until the bounds of eq. (15) are known, so
  * that no pixel waits for its own least key.
@@ -34,6 +35,7 @@ struct shape {
     unsigned vectors;
     bool excess; /* the last vector ends behind the last disparity */
     bool held;
+    unsigned lanes; /* n */
 };
 
 INLINE int16_t *keys_at(int16_t *block, struct shape shape, unsigned pixel)
@@ -159,7 +161,7 @@ INLINE void begin_keys(const struct row_input *input, struct shape shape, struct
 {
     for (unsigned d = 0; d < shape.vectors * VECTOR_LEN; d++) {
         bool is_candidate = (int)d < -input->start && d < input->disparities;
-        keys[d] = (int16_t)((int)(d / 8u) + (is_candidate ? INT16_MIN : 0));
+        keys[d] = (int16_t)((int)(d / shape.lanes) + (is_candidate ? INT16_MIN : 0));
     }
     for (unsigned i = 0; i < shape.vectors; i++) {
         const uint8_t *column = input->columns + i * VECTOR_LEN;
@@ -180,15 +182,15 @@ INLINE void begin_keys(const struct row_input *input, struct shape shape, struct
 }
 
 /* d, and what other sums are not to reach: floor(S (100 + percent) / 100), which eq. (15) compares with. */
-INLINE void find_bounds(struct winners *winners, unsigned from, unsigned percent)
+INLINE void find_bounds(struct shape shape, unsigned from, unsigned percent, struct winners *winners)
 {
     uint32_t scale = ((uint32_t)percent << 18) / 100u + 1u;
     for (unsigned x = from; x < from + BLOCK; x += LANES16) {
         vec16 key;
         vec16 lane;
-        find_least16(winners->kept + (size_t)x * KEPT_LANES, &key, &lane);
+        find_least16(winners->kept + (size_t)x * KEPT_LANES, shape.lanes, &key, &lane);
         store16(winners->sum + x, key);
-        store16(winners->d + x, or16(SHIFT_LEFT16(and16(key, splat16(15)), 3), lane));
+        store16(winners->d + x, add16(multiply16(and16(key, splat16(15)), splat16((int16_t)shape.lanes)), lane));
         vec16 sum = SHIFT_RIGHT_UNSIGNED16(key, 4);
         vec16 more = add16(multiply_high16(sum, splat16((int16_t)(uint16_t)scale)),
                            multiply16(sum, splat16((int16_t)(scale >> 16))));
@@ -198,19 +200,19 @@ INLINE void find_bounds(struct winners *winners, unsigned from, unsigned percent
     }
 }
 
-INLINE void count_of_pixel(struct shape shape, const int16_t *keys, size_t x, struct winners *winners)
+/* 0 less how many keys are below the bound, in any lanes. */
+INLINE vec16 count_of_pixel(struct shape shape, const int16_t *keys, size_t x, struct winners *winners)
 {
     vec16 bound = load_splat16(winners->bound + x);
-    vec8 within[VECTORS_MAX];
-    for (unsigned j = 0; j < shape.vectors; j++) {
-        vec16 first = above16(bound, load16(keys + j * VECTOR_LEN));
-        vec16 second = above16(bound, load16(keys + j * VECTOR_LEN + LANES16));
-        within[j] = join8(first, second);
+    vec16 within = splat16(0);
+    for (unsigned i = 0; i < shape.vectors; i++) {
+        const int16_t *at = keys + i * VECTOR_LEN;
+        within = add16(within, add16(above16(bound, load16(at)), above16(bound, load16(at + LANES16))));
     }
-    keep_count8(within, shape.vectors, winners->counts + x * KEPT_COUNTS);
     const int16_t *own = keys + winners->d[x];
     winners->below[x] = own[-1];
     winners->above[x] = own[1];
+    return within;
 }
 
 /* A whole block: the counts of pixels behind the row's end are not used. */
@@ -218,8 +220,9 @@ INLINE void count_within(struct shape shape, int16_t *block, unsigned from, stru
 {
     for (size_t i = 0; i < BLOCK; i += 2) {
         const int16_t *keys = keys_at(block, shape, (unsigned)i);
-        count_of_pixel(shape, keys, from + i, winners);
-        count_of_pixel(shape, keys + (shape.vectors * VECTOR_LEN + KEY_PAD), from + i + 1u, winners);
+        vec16 first = count_of_pixel(shape, keys, from + i, winners);
+        vec16 second = count_of_pixel(shape, keys + (shape.vectors * VECTOR_LEN + KEY_PAD), from + i + 1u, winners);
+        keep_counts16(first, second, winners->counts + (from + i) * KEPT_COUNTS);
     }
 }
 
@@ -305,7 +308,7 @@ INLINE void find_winners(const struct row_input *input, struct shape shape, unsi
             }
         }
         if (from > 0) { /* the block before: what it stored in pieces can be loaded in vectors by now */
-            find_bounds(winners, from - BLOCK, percent);
+            find_bounds(shape, from - BLOCK, percent, winners);
             count_within(shape, other, from - BLOCK, winners);
         }
         int16_t *swap = block;

@@ -1,6 +1,6 @@
 /*
  * Vectors of 32 bytes on x86-64 with AVX2, as vector_sse2.h describes them.
- * Included where the compiler may use "avx2,popcnt".
+ * Included where the compiler may use "avx2".
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -14,7 +14,7 @@
 #define VECTOR_LEN 32u
 #define LANE_PAIR 16u
 #define KEPT_LANES 2u
-#define KEPT_COUNTS 1u
+#define KEPT_COUNTS 4u
 typedef __m256i vec8;
 typedef __m256i vec16;
 
@@ -175,18 +175,21 @@ INLINE uint8_t first_byte8(vec8 a)
     return (uint8_t)_mm256_cvtsi256_si32(a);
 }
 
-INLINE void keep_count8(const vec8 *masks, unsigned count, int16_t *kept)
+/* 0 less the counts, modulo 256. */
+INLINE void keep_counts16(vec16 a, vec16 b, int16_t *kept)
 {
-    int lanes = 0;
-    for (unsigned i = 0; i < count; i++) {
-        lanes += __builtin_popcount((unsigned)_mm256_movemask_epi8(masks[i]));
-    }
-    *kept = (int16_t)lanes;
+    __m256i sums = _mm256_sad_epu8(_mm256_packs_epi16(a, b), _mm256_setzero_si256());
+    __m128i both = _mm_add_epi32(_mm256_castsi256_si128(sums), _mm256_extracti128_si256(sums, 1));
+    _mm_store_si128((__m128i *)(void *)kept, both);
 }
 
-INLINE vec16 find_count8(const int16_t *kept)
+INLINE vec16 find_counts16(const int16_t *kept)
 {
-    return load16(kept);
+    __m256i low = _mm256_packs_epi32(load16(kept), load16(kept + 16));
+    __m256i high = _mm256_packs_epi32(load16(kept + 32), load16(kept + 48));
+    const __m256i order = _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7);
+    __m256i counts = _mm256_permutevar8x32_epi32(_mm256_packs_epi32(low, high), order);
+    return _mm256_and_si256(_mm256_sub_epi16(_mm256_setzero_si256(), counts), _mm256_set1_epi16(255));
 }
 
 INLINE vec8 probe_index8(vec8 nibbles)
@@ -222,11 +225,6 @@ INLINE vec16 first_times16(vec8 a)
 INLINE vec16 second_times16(vec8 a)
 {
     return _mm256_maddubs_epi16(_mm256_set1_epi16(0x1000), a);
-}
-
-INLINE vec8 join8(vec16 low, vec16 high)
-{
-    return _mm256_packs_epi16(low, high);
 }
 
 INLINE vec16 add16(vec16 a, vec16 b)
@@ -296,8 +294,15 @@ INLINE void keep_least16(vec16 a, int16_t *kept)
     _mm_storeu_si32(kept, found);
 }
 
-INLINE void find_least16(const int16_t *kept, vec16 *least, vec16 *lane)
+INLINE unsigned least_lanes(unsigned vectors)
 {
+    (void)vectors;
+    return 8;
+}
+
+INLINE void find_least16(const int16_t *kept, unsigned lanes_count, vec16 *least, vec16 *lane)
+{
+    (void)lanes_count;
     __m256i low = load16(kept);
     __m256i high = load16(kept + 16);
     __m256i leasts = _mm256_packs_epi32(_mm256_srai_epi32(_mm256_slli_epi32(low, 16), 16),

@@ -159,16 +159,13 @@ INLINE uint8_t first_byte8(vec8 a)
     return vgetq_lane_u8(a, 0);
 }
 
-INLINE void keep_count8(const vec8 *masks, unsigned count, int16_t *kept)
+INLINE void keep_counts16(vec16 a, vec16 b, int16_t *kept)
 {
-    vec8 lanes = vdupq_n_u8(0);
-    for (unsigned i = 0; i < count; i++) {
-        lanes = vsubq_u8(lanes, masks[i]);
-    }
-    *kept = vaddvq_u8(lanes);
+    kept[0] = (int16_t)-vaddvq_s16(a);
+    kept[1] = (int16_t)-vaddvq_s16(b);
 }
 
-INLINE vec16 find_count8(const int16_t *kept)
+INLINE vec16 find_counts16(const int16_t *kept)
 {
     return vld1q_s16(kept);
 }
@@ -201,11 +198,6 @@ INLINE vec16 first_times16(vec8 a)
 INLINE vec16 second_times16(vec8 a)
 {
     return vshll_high_n_s8(vreinterpretq_s8_u8(a), 4);
-}
-
-INLINE vec8 join8(vec16 low, vec16 high)
-{
-    return vreinterpretq_u8_s8(vcombine_s8(vmovn_s16(low), vmovn_s16(high)));
 }
 
 INLINE vec16 add16(vec16 a, vec16 b)

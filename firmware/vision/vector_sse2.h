@@ -23,18 +23,19 @@
  *   spread_least8(a)             the least byte, unsigned, in every byte
  *   first_byte8(a)
  *   above16(a, b), equal16       lanes of ones where a > b, signed; where equal
- *   join8(low, high)             16-bit lanes of ones or zeros as bytes, in any order
- *   keep_count8(masks, count, kept)      into KEPT_COUNTS of 16 bits, aligned: how many bytes
- *                                of these vectors are ones; others are 0
- *   find_count8(kept)            the numbers of VECTOR_LEN / 2 times that
+ *   keep_counts16(a, b, kept)    into 2 KEPT_COUNTS of 16 bits, aligned, what the next one needs;
+ *                                lanes in -128 .. 0 and at most 255 in all
+ *   find_counts16(kept)          of VECTOR_LEN / 2 vectors so kept, 0 less the sum of their lanes
  *   probe_index8(a)              of nibbles in bytes, what probe4() takes
  *   probe_difference4(probe4(i), a)      |n - a|, where i is the index of n
  *   pair_lanes(a)                lanes in order to the order of LANE_PAIR
  *   first_times16, second_times16(a)     16 times the bytes with a sign
  *   keep_least16(a, kept)        into KEPT_LANES of 16 bits, aligned, what the next one needs
- *   find_least16(kept, &least, &lane)    of VECTOR_LEN / 2 vectors so kept, in the order
+ *   least_lanes(vectors)         lanes that are told apart where a pixel has so many vectors
+ *                                of bytes: a power of two, and D <= 16 times that
+ *   find_least16(kept, lanes, &least, &lane)     of VECTOR_LEN / 2 vectors so kept, in the order
  *                                of lanes: the least number, plus 2^15, and the
- *                                first lane modulo 8 that has it
+ *                                first lane modulo lanes that has it
  *
  * Where lanes are widened a vector of bytes becomes two: lanes first to
  * first + VECTOR_LEN / 2 - 1 and the others. With LANE_PAIR = 1 they are lanes in
@@ -52,7 +53,7 @@
 #define INLINE static inline __attribute__((always_inline))
 #define VECTOR_LEN 16u
 #define LANE_PAIR 1u
-#define KEPT_COUNTS 8u
+#define KEPT_COUNTS 4u
 typedef __m128i vec8;
 typedef __m128i vec16;
 
@@ -215,14 +216,10 @@ INLINE uint8_t first_byte8(vec8 a)
     return (uint8_t)_mm_cvtsi128_si32(a);
 }
 
-/* Of two halves what is 0 less the count, modulo 256. */
-INLINE void keep_count8(const vec8 *masks, unsigned count, int16_t *kept)
+/* 0 less the counts, modulo 256. */
+INLINE void keep_counts16(vec16 a, vec16 b, int16_t *kept)
 {
-    __m128i lanes = _mm_setzero_si128();
-    for (unsigned i = 0; i < count; i++) {
-        lanes = _mm_add_epi8(lanes, masks[i]);
-    }
-    _mm_store_si128((__m128i *)(void *)kept, _mm_sad_epu8(lanes, _mm_setzero_si128()));
+    store16(kept, _mm_sad_epu8(_mm_packs_epi16(a, b), _mm_setzero_si128()));
 }
 
 INLINE vec8 probe_index8(vec8 nibbles)
@@ -259,11 +256,6 @@ INLINE vec16 first_times16(vec8 a)
 INLINE vec16 second_times16(vec8 a)
 {
     return _mm_srai_epi16(_mm_unpackhi_epi8(_mm_setzero_si128(), a), 4);
-}
-
-INLINE vec8 join8(vec16 low, vec16 high)
-{
-    return _mm_packs_epi16(low, high);
 }
 
 INLINE vec16 add16(vec16 a, vec16 b)
@@ -325,15 +317,12 @@ INLINE vec16 xor16(vec16 a, vec16 b)
 #define SHIFT_RIGHT16(a, n) _mm_srai_epi16(a, n)
 #define SHIFT_RIGHT_UNSIGNED16(a, n) _mm_srli_epi16(a, n)
 
-INLINE vec16 find_count8(const int16_t *kept)
+INLINE vec16 find_counts16(const int16_t *kept)
 {
-    __m128i pairs[4];
-    for (unsigned i = 0; i < 4; i++) {
-        pairs[i] = _mm_packs_epi32(load16(kept + i * 16u), load16(kept + i * 16u + 8u));
-    }
-    __m128i low = _mm_madd_epi16(_mm_packs_epi32(pairs[0], pairs[1]), _mm_set1_epi16(-1));
-    __m128i high = _mm_madd_epi16(_mm_packs_epi32(pairs[2], pairs[3]), _mm_set1_epi16(-1));
-    return _mm_and_si128(_mm_packs_epi32(low, high), _mm_set1_epi16(255));
+    __m128i low = _mm_packs_epi32(load16(kept), load16(kept + 8));
+    __m128i high = _mm_packs_epi32(load16(kept + 16), load16(kept + 24));
+    __m128i counts = _mm_sub_epi16(_mm_setzero_si128(), _mm_packs_epi32(low, high));
+    return _mm_and_si128(counts, _mm_set1_epi16(255));
 }
 
 INLINE vec16 zip_low16(vec16 a, vec16 b)
