@@ -26,7 +26,6 @@ struct smooth_row {
     unsigned width;
     unsigned disparities;
     int start;
-    struct shape shape;
     vec8 excess;                                        /* 255 in the lanes of the last vector that do not count */
     vec8 least_left;                                    /* of left, in every byte */
     _Alignas(32) uint8_t here[TSR_DISPARITY_COUNT_MAX]; /* sums of C over three rows: of column x, */
@@ -47,26 +46,30 @@ struct path {
 };
 
 /* Vector i of costs, where lanes that do not count hold 255. */
-INLINE vec8 load_costs(const struct smooth_row *row, const uint8_t *at, unsigned i)
+INLINE vec8 load_costs(const struct smooth_row *row, struct shape shape, const uint8_t *at, unsigned i)
 {
     vec8 costs = load8(at + i * VECTOR_LEN);
-    return i + 1u < row->shape.vectors ? costs : add_saturated8(costs, row->excess);
+    return i + 1u < shape.vectors ? costs : add_saturated8(costs, row->excess);
 }
 
-INLINE struct path begin_path(const struct smooth_row *row, const uint8_t *source, uint8_t *target, vec8 least,
-                              uint8_t penalty)
+INLINE struct path begin_path(const struct smooth_row *row, struct shape shape, const uint8_t *source, uint8_t *target,
+                              vec8 least, uint8_t penalty)
 {
-    struct path path = {
-        source,           target, least, add8(least, splat8(penalty)), splat8(UINT8_MAX), load_costs(row, source, 0),
-        splat8(UINT8_MAX)};
+    struct path path = {source,
+                        target,
+                        least,
+                        add8(least, splat8(penalty)),
+                        splat8(UINT8_MAX),
+                        load_costs(row, shape, source, 0),
+                        splat8(UINT8_MAX)};
     return path;
 }
 
 /* No lane that counts wraps: costs are at most 68, and best is never below least. */
-INLINE vec8 walk(const struct smooth_row *row, struct path *path, unsigned i, vec8 cost)
+INLINE vec8 walk(const struct smooth_row *row, struct shape shape, struct path *path, unsigned i, vec8 cost)
 {
-    bool is_last = i + 1u == row->shape.vectors;
-    vec8 next = is_last ? splat8(UINT8_MAX) : load_costs(row, path->source, i + 1u);
+    bool is_last = i + 1u == shape.vectors;
+    vec8 next = is_last ? splat8(UINT8_MAX) : load_costs(row, shape, path->source, i + 1u);
     vec8 beside = min8(before8(path->here, path->previous), behind8(path->here, next));
     vec8 best = min8(min8(path->here, path->jump), add_saturated8(beside, splat8(TSR_MATCH_PENALTY_NEAR)));
     vec8 value = subtract8(add8(cost, best), path->least);
@@ -105,30 +108,31 @@ INLINE void move_candidates(struct smooth_row *row, unsigned x)
 }
 
 /* Keys and the least of them of one pixel: eqs. (42) to (46). */
-INLINE void sum_paths(struct smooth_row *row, unsigned x, int16_t *keys, int16_t *kept)
+INLINE void sum_paths(struct smooth_row *row, struct shape shape, unsigned x, int16_t *keys, int16_t *kept)
 {
     static const _Alignas(32) uint8_t none[TSR_DISPARITY_COUNT_MAX] = {0};
     struct tsr_match_paths *paths = &row->paths;
     size_t at = (size_t)x * row->disparities;
     unsigned last = row->width - 1u;
     uint8_t gray = row->gray[x];
-    struct path left = begin_path(row, x > 0 ? row->left : none, row->left, row->least_left,
+    struct path left = begin_path(row, shape, x > 0 ? row->left : none, row->left, row->least_left,
                                   x > 0 ? tsr_match_penalty_far(gray, row->gray[x - 1u]) : 0);
-    struct path up = begin_path(row, paths->above[0] + at, paths->above[0] + at, splat8(paths->least[0][x]),
+    struct path up = begin_path(row, shape, paths->above[0] + at, paths->above[0] + at, splat8(paths->least[0][x]),
                                 tsr_match_penalty_far(gray, row->gray_above[x]));
     struct path right =
-        x < last ? begin_path(row, paths->above[1] + at + row->disparities, paths->above[1] + at,
+        x < last ? begin_path(row, shape, paths->above[1] + at + row->disparities, paths->above[1] + at,
                               splat8(paths->least[1][x + 1u]), tsr_match_penalty_far(gray, row->gray_above[x + 1u]))
-                 : begin_path(row, none, paths->above[1] + at, splat8(0), 0);
+                 : begin_path(row, shape, none, paths->above[1] + at, splat8(0), 0);
     vec16 least = splat16(INT16_MAX);
-    for (unsigned i = 0; i < row->shape.vectors; i++) {
+    for (unsigned i = 0; i < shape.vectors; i++) {
         vec8 cost = move_box(row, x < last ? x + 1u : last, i);
-        vec8 sums = add8(walk(row, &left, i, cost), add8(walk(row, &up, i, cost), walk(row, &right, i, cost)));
+        vec8 sums = add8(walk(row, shape, &left, i, cost),
+                         add8(walk(row, shape, &up, i, cost), walk(row, shape, &right, i, cost)));
         vec8 biased = pair_lanes(xor8(sums, splat8(SUM_BIAS)));
         vec16 first = add16(first_times16(biased), load16(row->base + i * VECTOR_LEN));
         vec16 second = add16(second_times16(biased), load16(row->base + i * VECTOR_LEN + LANES16));
-        first = mask_excess(first, row->shape, 2u * i, row->disparities);
-        second = mask_excess(second, row->shape, 2u * i + 1u, row->disparities);
+        first = mask_excess(first, shape, 2u * i, row->disparities);
+        second = mask_excess(second, shape, 2u * i + 1u, row->disparities);
         store16(keys + i * VECTOR_LEN, first);
         store16(keys + i * VECTOR_LEN + LANES16, second);
         least = min16(least, min16(first, second));
@@ -140,46 +144,61 @@ INLINE void sum_paths(struct smooth_row *row, unsigned x, int16_t *keys, int16_t
 }
 
 /* Column 0 enters, and stands for the one before it as well. */
-static void begin_smooth_row(struct smooth_row *row)
+INLINE void begin_smooth_row(struct smooth_row *row, struct shape shape)
 {
-    for (unsigned i = 0; i < row->shape.vectors; i++) {
+    for (unsigned i = 0; i < shape.vectors; i++) {
         (void)move_box(row, 0, i);
         (void)move_box(row, 0, i);
     }
-    for (unsigned d = 0; d < row->shape.vectors * VECTOR_LEN; d++) {
+    for (unsigned d = 0; d < shape.vectors * VECTOR_LEN; d++) {
         bool is_candidate = (int)d < -row->start && d < row->disparities;
-        row->base[d] = (int16_t)((int)(d / row->shape.lanes) + 16 * SUM_BIAS + (is_candidate ? INT16_MIN : 0));
+        row->base[d] = (int16_t)((int)(d / shape.lanes) + 16 * SUM_BIAS + (is_candidate ? INT16_MIN : 0));
     }
     uint8_t excess[VECTOR_LEN];
     for (unsigned i = 0; i < VECTOR_LEN; i++) {
-        excess[i] = (row->shape.vectors - 1u) * VECTOR_LEN + i < row->disparities ? 0 : UINT8_MAX;
+        excess[i] = (shape.vectors - 1u) * VECTOR_LEN + i < row->disparities ? 0 : UINT8_MAX;
     }
     row->excess = load8(excess);
 }
 
-static void find_smooth_winners(struct smooth_row *row, unsigned percent, struct winners *winners)
+INLINE void find_smooth_winners(struct smooth_row *row, struct shape shape, unsigned percent, struct winners *winners)
 {
     _Alignas(32) int16_t keys[KEYS_MAX];
     for (unsigned i = 0; i <= BLOCK; i++) {
-        memset(keys_at(keys, row->shape, i) - KEY_PAD, 0, KEY_PAD * sizeof *keys);
+        memset(keys_at(keys, shape, i) - KEY_PAD, 0, KEY_PAD * sizeof *keys);
     }
-    begin_smooth_row(row);
+    begin_smooth_row(row, shape);
     for (unsigned from = 0; from < row->width; from += BLOCK) {
         unsigned left = row->width - from;
         unsigned count = left < BLOCK ? left : BLOCK;
         for (unsigned i = 0; i < count; i++) {
             move_candidates(row, from + i);
-            sum_paths(row, from + i, keys_at(keys, row->shape, i), winners->kept + (size_t)(from + i) * KEPT_LANES);
+            sum_paths(row, shape, from + i, keys_at(keys, shape, i), winners->kept + (size_t)(from + i) * KEPT_LANES);
         }
-        find_bounds(row->shape, from, percent, winners);
-        count_within(row->shape, keys, from, winners);
+        find_bounds(shape, from, percent, winners);
+        count_within(shape, keys, from, winners);
+    }
+}
+
+/* With the usual counts of vectors as constants. */
+static void find_smooth_winners_for(struct smooth_row *row, unsigned percent, struct winners *winners)
+{
+    unsigned vectors = (row->disparities + VECTOR_LEN - 1u) / VECTOR_LEN;
+    bool excess = row->disparities % VECTOR_LEN != 0;
+    if (vectors == 32u / VECTOR_LEN && !excess) {
+        find_smooth_winners(row, (struct shape){32u / VECTOR_LEN, false, false, least_lanes(32u / VECTOR_LEN)}, percent,
+                            winners);
+    } else if (vectors == 64u / VECTOR_LEN && !excess) {
+        find_smooth_winners(row, (struct shape){64u / VECTOR_LEN, false, false, least_lanes(64u / VECTOR_LEN)}, percent,
+                            winners);
+    } else {
+        find_smooth_winners(row, (struct shape){vectors, excess, false, least_lanes(vectors)}, percent, winners);
     }
 }
 
 static void smooth_row(const struct tsr_match *match, unsigned y)
 {
     const struct tsr_match_config *config = &match->config;
-    unsigned vectors = (config->disparities + VECTOR_LEN - 1u) / VECTOR_LEN;
     const uint8_t *gray = match->left.pixels + (size_t)y * match->left.stride;
     struct smooth_row row = {.costs = {tsr_match_costs_at(match, y > 0 ? y - 1u : 0u), tsr_match_costs_at(match, y),
                                        tsr_match_costs_at(match, y + 1u < config->height ? y + 1u : y)},
@@ -188,13 +207,12 @@ static void smooth_row(const struct tsr_match *match, unsigned y)
                              .gray_above = y > 0 ? gray - match->left.stride : gray,
                              .width = config->width,
                              .disparities = config->disparities,
-                             .start = config->search_start_px,
-                             .shape = {vectors, config->disparities % VECTOR_LEN != 0, false, least_lanes(vectors)}};
+                             .start = config->search_start_px};
     struct winners winners;
     struct verdicts verdicts;
     struct choices choices;
     memset(winners.kept + (size_t)config->width * KEPT_LANES, 0, BLOCK * KEPT_LANES * sizeof *winners.kept);
-    find_smooth_winners(&row, config->uniqueness_percent, &winners);
+    find_smooth_winners_for(&row, config->uniqueness_percent, &winners);
     memset(verdicts.textured, 0xff, sizeof verdicts.textured);
     choose(config, &winners, &verdicts, &choices);
     write_row(match, y, &winners, &choices);
