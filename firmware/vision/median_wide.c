@@ -14,8 +14,7 @@
 
 #include <stdbool.h>
 
-#define RADIUS 2u
-#define SIDE (2u * RADIUS + 1u)
+#define SIDE (2u * TSR_MEDIAN_WIDE_RADIUS + 1u)
 
 /* The valid values of a column, ascending. */
 struct column {
@@ -85,22 +84,14 @@ static struct rows rows_around(const struct tsr_median *median, unsigned y, uint
     size_t width = median->width;
     struct rows rows = {{NULL}};
     for (unsigned j = 0; j < SIDE; j++) {
-        unsigned below = y + j; /* row below - RADIUS */
-        if (j < RADIUS && below >= RADIUS) {
+        unsigned below = y + j; /* row below - TSR_MEDIAN_WIDE_RADIUS */
+        if (j < TSR_MEDIAN_WIDE_RADIUS && below >= TSR_MEDIAN_WIDE_RADIUS) {
             rows.row[j] = above + below % 2u * width;
-        } else if (j >= RADIUS && below - RADIUS < median->height) {
-            rows.row[j] = median->map + (below - RADIUS) * width;
+        } else if (j >= TSR_MEDIAN_WIDE_RADIUS && below - TSR_MEDIAN_WIDE_RADIUS < median->height) {
+            rows.row[j] = median->map + (below - TSR_MEDIAN_WIDE_RADIUS) * width;
         }
     }
     return rows;
-}
-
-/* How many of i - RADIUS .. i + RADIUS lie in 0 .. len - 1. */
-static unsigned count_inside(unsigned i, unsigned len)
-{
-    unsigned before = i < RADIUS ? i : RADIUS;
-    unsigned behind = len - 1u - i < RADIUS ? len - 1u - i : RADIUS;
-    return before + 1u + behind;
 }
 
 void tsr_median_filter_wide_row(const struct tsr_median *median, unsigned y)
@@ -110,9 +101,9 @@ void tsr_median_filter_wide_row(const struct tsr_median *median, unsigned y)
     uint16_t *saved = above + (size_t)(y % 2u) * width;
     uint16_t *row = median->map + (size_t)y * width;
     const struct rows rows = rows_around(median, y, above);
-    unsigned rows_inside = count_inside(y, median->height);
+    unsigned rows_inside = tsr_median_count_inside(y, median->height);
     struct window window = {.count = 0};
-    for (unsigned entering = 0; entering < width + RADIUS; entering++) {
+    for (unsigned entering = 0; entering < width + TSR_MEDIAN_WIDE_RADIUS; entering++) {
         struct column *column = &window.columns[entering % SIDE];
         if (entering >= SIDE) {
             remove_column(&window, column);
@@ -122,10 +113,11 @@ void tsr_median_filter_wide_row(const struct tsr_median *median, unsigned y)
             read_column(&rows, entering, column);
             insert_column(&window, column);
         }
-        if (entering >= RADIUS) {
-            unsigned x = entering - RADIUS;
+        if (entering >= TSR_MEDIAN_WIDE_RADIUS) {
+            unsigned x = entering - TSR_MEDIAN_WIDE_RADIUS;
             saved[x] = row[x];
-            bool enough = 2u * window.count > rows_inside * count_inside(x, width); /* docs/math.md, eq. (80) */
+            bool enough =
+                2u * window.count > rows_inside * tsr_median_count_inside(x, width); /* docs/math.md, eq. (80) */
             row[x] = enough ? window.values[(window.count - 1u) / 2u] : TSR_DISPARITY_INVALID;
         }
     }

@@ -13,6 +13,16 @@
 #define TSR_MEDIAN_SLIDES
 #endif
 
+#define TSR_MEDIAN_WIDE_RADIUS 2u
+
+/* How many of the columns or rows of a window around i lie in 0 .. len - 1. */
+static inline unsigned tsr_median_count_inside(unsigned i, unsigned len)
+{
+    unsigned before = i < TSR_MEDIAN_WIDE_RADIUS ? i : TSR_MEDIAN_WIDE_RADIUS;
+    unsigned behind = len - 1u - i < TSR_MEDIAN_WIDE_RADIUS ? len - 1u - i : TSR_MEDIAN_WIDE_RADIUS;
+    return before + 1u + behind;
+}
+
 /* Rows 0 .. y - 1 are done. */
 void tsr_median_filter_wide_row(const struct tsr_median *median, unsigned y);
 

@@ -16,12 +16,11 @@
 #include <stdbool.h>
 #include <string.h>
 
-#define RADIUS 2u
-#define SIDE (2u * RADIUS + 1u)
+#define SIDE (2u * TSR_MEDIAN_WIDE_RADIUS + 1u)
 #define VALUES (SIDE * SIDE)
 #define MIDDLE (VALUES / 2u)
 #define BLOCK 32u
-#define COLUMNS (BLOCK + 2u * RADIUS)
+#define COLUMNS (BLOCK + 2u * TSR_MEDIAN_WIDE_RADIUS)
 
 /* K. E. Batcher's merge exchange (Sorting networks and their applications, AFIPS 32, 1968; D. E. Knuth, The Art of
  * Computer Programming 3, 5.2.2 M) for 25 values, of which only what the middle one depends on. The lesser value goes
@@ -40,7 +39,8 @@ static const uint8_t comparators[][2] = {
     {9, 12},  {11, 14}, {11, 12},
 };
 
-/* Columns x - RADIUS .. x + BLOCK + RADIUS - 1 of the rows around a block; invalid outside the map. */
+/* Columns x - TSR_MEDIAN_WIDE_RADIUS .. x + BLOCK + TSR_MEDIAN_WIDE_RADIUS - 1 of the rows around a block; invalid
+ * outside the map. */
 struct surroundings {
     uint16_t rows[SIDE][COLUMNS];
 };
@@ -50,8 +50,8 @@ struct windows {
     int16_t valid[BLOCK];
 };
 
-/* Columns from .. from + count - 1 of the rows y - RADIUS .. y + RADIUS into place; those above are in above, by
- * parity. */
+/* Columns from .. from + count - 1 of the rows y - TSR_MEDIAN_WIDE_RADIUS .. y + TSR_MEDIAN_WIDE_RADIUS into place;
+ * those above are in above, by parity. */
 static void load_columns(const struct tsr_median *median, unsigned y, unsigned from, unsigned count, unsigned place,
                          struct surroundings *around)
 {
@@ -61,11 +61,12 @@ static void load_columns(const struct tsr_median *median, unsigned y, unsigned f
     inside = inside < count ? inside : count;
     for (unsigned j = 0; j < SIDE; j++) {
         memset(around->rows[j] + place, 0xff, count * sizeof *around->rows[j]);
-        unsigned below = y + j; /* row below - RADIUS */
-        if (below < RADIUS || below - RADIUS >= median->height) {
+        unsigned below = y + j; /* row below - TSR_MEDIAN_WIDE_RADIUS */
+        if (below < TSR_MEDIAN_WIDE_RADIUS || below - TSR_MEDIAN_WIDE_RADIUS >= median->height) {
             continue;
         }
-        const uint16_t *row = j < RADIUS ? above + below % 2u * width : median->map + (below - RADIUS) * width;
+        const uint16_t *row = j < TSR_MEDIAN_WIDE_RADIUS ? above + below % 2u * width
+                                                         : median->map + (below - TSR_MEDIAN_WIDE_RADIUS) * width;
         memcpy(around->rows[j] + place, row + from, inside * sizeof *row);
     }
 }
@@ -98,28 +99,20 @@ static void order(int16_t *restrict a, int16_t *restrict b)
     }
 }
 
-/* How many of i - RADIUS .. i + RADIUS lie in 0 .. len - 1. */
-static unsigned count_inside(unsigned i, unsigned len)
-{
-    unsigned before = i < RADIUS ? i : RADIUS;
-    unsigned behind = len - 1u - i < RADIUS ? len - 1u - i : RADIUS;
-    return before + 1u + behind;
-}
-
 void tsr_median_filter_wide_row(const struct tsr_median *median, unsigned y)
 {
     unsigned width = median->width;
     uint16_t *saved = (uint16_t *)(void *)median->scratch + (size_t)(y % 2u) * width;
     uint16_t *row = median->map + (size_t)y * width;
-    unsigned rows_inside = count_inside(y, median->height);
+    unsigned rows_inside = tsr_median_count_inside(y, median->height);
     struct surroundings around;
     memset(&around, 0xff, sizeof around);
-    load_columns(median, y, 0, RADIUS, COLUMNS - RADIUS, &around);
+    load_columns(median, y, 0, TSR_MEDIAN_WIDE_RADIUS, COLUMNS - TSR_MEDIAN_WIDE_RADIUS, &around);
     for (unsigned x = 0; x < width; x += BLOCK) {
         for (unsigned j = 0; j < SIDE; j++) { /* columns that the block before may have overwritten */
-            memmove(around.rows[j], around.rows[j] + BLOCK, 2u * RADIUS * sizeof *around.rows[j]);
+            memmove(around.rows[j], around.rows[j] + BLOCK, 2u * TSR_MEDIAN_WIDE_RADIUS * sizeof *around.rows[j]);
         }
-        load_columns(median, y, x + RADIUS, BLOCK, 2u * RADIUS, &around);
+        load_columns(median, y, x + TSR_MEDIAN_WIDE_RADIUS, BLOCK, 2u * TSR_MEDIAN_WIDE_RADIUS, &around);
         struct windows windows;
         fill_windows(&around, &windows);
         for (unsigned k = 0; k < sizeof comparators / sizeof comparators[0]; k++) {
@@ -128,7 +121,8 @@ void tsr_median_filter_wide_row(const struct tsr_median *median, unsigned y)
         unsigned count = width - x < BLOCK ? width - x : BLOCK;
         memcpy(saved + x, row + x, count * sizeof *row);
         for (unsigned i = 0; i < count; i++) {
-            bool enough = 2u * (unsigned)windows.valid[i] > rows_inside * count_inside(x + i, width); /* eq. (80) */
+            bool enough =
+                2u * (unsigned)windows.valid[i] > rows_inside * tsr_median_count_inside(x + i, width); /* eq. (80) */
             row[x + i] =
                 enough ? (uint16_t)((uint16_t)windows.values[MIDDLE][i] ^ 0x8000u) : (uint16_t)TSR_DISPARITY_INVALID;
         }
