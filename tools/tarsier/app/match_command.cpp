@@ -5,7 +5,6 @@
  */
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -17,6 +16,7 @@
 #include "match_options.h"
 #include "tsr/host/colour_map.h"
 #include "tsr/host/input_error.h"
+#include "tsr/host/output_files.h"
 #include "tsr/stereo/disparity_file.h"
 
 namespace tsr
@@ -25,37 +25,37 @@ namespace
 {
 
 using Json = nlohmann::ordered_json;
-namespace fs = std::filesystem;
 
-bool is_same_file(const fs::path &a, const fs::path &b)
-{
-    std::error_code error;
-    return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error) && !error;
-}
+/* Largest whole disparity of a 16-bit PNG, px. */
+constexpr int kPngDisparityMax = 65535 / kDisparityPngScale;
 
-/* Before anything is read: outputs that would destroy an input or each other. */
-void check_outputs(const MatchOptions &options)
+void check_range(const MatchOptions &options)
 {
-    const DisparityFormat format = disparity_format(options.out, "--out");
-    if (format == DisparityFormat::kPng && options.search_start < 0) {
+    const bool is_png = disparity_format(options.out, "--out") == DisparityFormat::kPng;
+    if (is_png && options.search_start < 0) {
         throw InputError(options.out.string(), "--out",
                          "a PNG holds no disparity below 0, which --search-start asks for: write .pfm");
     }
+    const int disparities = std::min(options.disparities, static_cast<int>(TSR_DISPARITY_COUNT_MAX));
+    if (is_png && options.search_start > kPngDisparityMax + 1 - disparities) {
+        throw InputError(options.out.string(), "--out",
+                         "a PNG holds no disparity above " + std::to_string(kPngDisparityMax) +
+                             " px, which --search-start asks for: write .pfm");
+    }
+}
+
+/* Before anything is read. */
+void check_files(const MatchOptions &options)
+{
+    check_range(options);
     if (!options.picture.empty() && options.picture.extension() != ".png") {
         throw InputError(options.picture.string(), "--png", "the name does not end in .png");
     }
-    const fs::path inputs[] = {options.left, options.right};
-    for (const fs::path &input : inputs) {
-        if (is_same_file(options.out, input)) {
-            throw InputError(options.out.string(), "--out", "is an input");
-        }
-        if (!options.picture.empty() && is_same_file(options.picture, input)) {
-            throw InputError(options.picture.string(), "--png", "is an input");
-        }
+    std::vector<OutputFile> outputs = {{options.out, "--out"}};
+    if (!options.picture.empty()) {
+        outputs.push_back({options.picture, "--png"});
     }
-    if (!options.picture.empty() && is_same_file(options.picture, options.out)) {
-        throw InputError(options.picture.string(), "--png", "is the same file as --out");
-    }
+    check_outputs(outputs, {options.left, options.right});
 }
 
 GrayImage read_right(const MatchOptions &options, const ImageSize &size)
@@ -93,7 +93,9 @@ void write_outputs(const MatchOptions &options, const StereoResult &result, cons
         write_png(options.picture,
                   colour_disparity(result.disparity_q4, config.width, config.height, config.disparities));
     }
+    EarlierOutput picture(options.picture);
     write_disparity_file(options.out, view_disparity(result, config));
+    picture.keep();
 }
 
 void print_json(const MatchOptions &options, const StereoPipeline &pipeline, const StereoResult &result)
@@ -128,7 +130,7 @@ void print_text(const MatchOptions &options, const StereoPipeline &pipeline, con
 
 int match(const MatchOptions &options)
 {
-    check_outputs(options);
+    check_files(options);
     const GrayImage left = read_gray_image(options.left);
     const StereoOptions stereo = read_match_options(options, left.size());
     const GrayImage right = read_right(options, left.size());

@@ -2,6 +2,7 @@
 #include "tsr/stage/rectify_command.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 
@@ -10,6 +11,7 @@
 #include "tsr/host/atomic_file.h"
 #include "tsr/host/calibration.h"
 #include "tsr/host/input_error.h"
+#include "tsr/host/output_files.h"
 #include "tsr/host/rectification.h"
 #include "tsr/host/rectify_table.h"
 
@@ -36,6 +38,12 @@ RectifyOptions rectify_options(const RectifyTableOptions &options)
 {
     if ((options.width == 0) != (options.height == 0)) {
         throw InputError("command line", "--width, --height", "give both or none");
+    }
+    if (options.zoom && !(*options.zoom >= 0 && *options.zoom <= 1)) {
+        throw InputError("command line", "--zoom", "takes 0 .. 1");
+    }
+    if (options.unit_mm && !(*options.unit_mm > 0 && std::isfinite(*options.unit_mm))) {
+        throw InputError("command line", "--unit-mm", "takes a number above 0");
     }
     RectifyOptions chosen;
     chosen.output = {options.width, options.height};
@@ -96,21 +104,33 @@ void print_toml(const StereoCalibration &calibration, const Rectification &recti
     }
 }
 
+void check_files(const RectifyTableOptions &options)
+{
+    std::vector<OutputFile> outputs = {{options.table, "--out"}};
+    if (!options.c_header.empty()) {
+        outputs.push_back({options.c_header, "--c-header"});
+    }
+    check_outputs(outputs, options.calibration);
+}
+
 } // namespace
 
 void write_rectify_table(const RectifyTableOptions &options)
 {
+    check_files(options);
     const RectifyOptions chosen = rectify_options(options);
     CalibrationUnits units;
     units.size = parse_size(options.calibrated, "--calibrated");
-    units.unit_mm = options.unit_mm;
+    units.unit_mm = options.unit_mm.value_or(0.0);
     const StereoCalibration calibration = read_calibration(options.calibration, units);
     const Rectification rectification = rectify_calibration(calibration, chosen);
     const RectifyTable table = make_rectify_table(rectification, options.step, calibration.file);
     if (!options.c_header.empty()) {
         write_file_atomically(options.c_header, rectify_c_header(table, rectification, c_name(options.c_header)));
     }
+    EarlierOutput header(options.c_header);
     write_file_atomically(options.table, std::span<const std::uint8_t>(table.bytes));
+    header.keep();
     if (options.json) {
         std::cout << as_json(calibration, rectification, table).dump(2) << '\n';
     } else {
