@@ -192,14 +192,21 @@ def calibrations(folder):
     refuse("calibration: another size than it says", command("good.yml", RIG, "--calibrated", "320x240"), "--calibrated",
            "640x480")
     refuse("calibration: no width", command("good.yml", RIG, "--width", "0", "--height", "0"), "--width", "above 0")
-    refuse("calibration: table over the calibration", command("good.yml", RIG)[:-1] + [folder / "good.yml"], "--out",
-           "is an input")
-    check((folder / "good.yml").read_text() == RIG, "the calibration was overwritten")
-    refuse("calibration: header over the table", command("good.yml", RIG, "--c-header", folder / "." / table.name),
-           "--c-header", "--out")
-    nowhere = command("good.yml", RIG)
-    nowhere[-1] = folder / "no/such/folder/rig.rect"
+    for option, value in (("--zoom", "nan"), ("--zoom", "1.5"), ("--unit-mm", "nan"), ("--unit-mm", "0")):
+        refuse(f"calibration: {option} {value}", command("good.yml", RIG, option, value), option, "takes")
+    header = folder / "rig.h"
+    nowhere = command("good.yml", RIG, "--c-header", header)
+    nowhere[4] = folder / "no/such/folder/rig.rect"
     refuse("calibration: nowhere to write", nowhere, "no/such/folder")
+    check(not header.exists(), "a table that could not be written left its header")
+    refuse("calibration: header without a name", command("good.yml", RIG, "--c-header", ""), "--c-header", "empty")
+    refuse("calibration: header over the table", command("good.yml", RIG, "--c-header", table), "--c-header", "--out")
+    refuse("calibration: header over the calibration", command("good.yml", RIG, "--c-header", folder / "good.yml"),
+           "good.yml", "--c-header", "input")
+    over = command("good.yml", RIG)
+    over[4] = folder / "good.yml"
+    refuse("calibration: table over the calibration", over, "good.yml", "--out", "input")
+    check((folder / "good.yml").read_text() == RIG, "the calibration was overwritten")
     check(not table.exists(), "a refused calibration left a table")
 
 

@@ -106,6 +106,7 @@ def bad_input(folder):
     refuse("other size", good, folder / "small.pfm", mentions=["small.pfm", "size", "29x20", "30x20"])
     refuse("mask of other size", good, good, "--mask", folder / "wide.png", mentions=["wide.png", "size"])
     refuse("mask without a pixel", good, good, "--mask", folder / "mask8.png", mentions=["good.pfm", "mask"])
+    refuse("mask without a name", good, good, "--mask", "", mentions=["--mask", "empty"])
     refuse("nothing known", good, folder / "unknown.pfm", mentions=["unknown.pfm", "known"])
     refuse("truncated PFM", folder / "cut.pfm", good, mentions=["cut.pfm", "pixels"])
     refuse("truncated PNG", good, folder / "cut.png", mentions=["cut.png"])

@@ -114,6 +114,18 @@ def small_pair(folder):
     check(text.returncode == 0 and "valid" in text.stdout, text.stderr)
 
 
+def full_disk(folder):
+    """What cannot be written or printed is said, and leaves nothing."""
+    words = [str(word) for word in (TARSIER, "match", folder / "l.pgm", folder / "r.png", "--disparities", "16", "-o",
+                                    folder / "full.pfm")]
+    for what, shell in (("a file beyond its limit", 'ulimit -f 1; exec "$@"'), ("no room to print", 'exec "$@" >/dev/full')):
+        run = subprocess.run(["bash", "-c", shell, "bash", *words], capture_output=True, text=True, timeout=60)
+        check(run.returncode == 2 and len(run.stderr.splitlines()) == 1, f"{what}: {run.returncode} {run.stderr}")
+        check(not list(folder.glob(".full.pfm*")), f"{what}: a temporary file is left")
+        print(f"{what}: {run.stderr.strip()}")
+        check((folder / "full.pfm").exists() == ("print" in what), f"{what}: the map")
+
+
 def bad_input(scene, folder):
     left, right = (scene / f"{side}160/000.pgm" for side in ("left", "right"))
     out, picture = folder / "out.pfm", folder / "out.png"
@@ -164,14 +176,25 @@ def bad_input(scene, folder):
     refuse("no such format", left, right, "--disparities", 32, "-o", folder / "out.tif", mentions=["out.tif", "--out"])
     refuse("negative in a PNG", left, right, "--disparities", 32, "--search-start", -4, "-o", picture,
            mentions=["out.png", "--search-start"], left=[picture])
+    write_pgm(folder / "wide.pgm", np.zeros((9, 640), np.uint8))
+    wide = (folder / "wide.pgm", folder / "wide.pgm", "--disparities", 16, "-o", picture, "--png", folder / "near.png")
+    refuse("more than a PNG holds", *wide, "--search-start", 241, mentions=["out.png", "--search-start"],
+           left=[picture, folder / "near.png"])
+    check(match(*wide, "--search-start", 240).returncode == 0, "255 px fit a PNG")
+    picture.unlink()
     refuse("nowhere to write", left, right, "--disparities", 32, "-o", folder / "no/where.pfm", mentions=["where.pfm"])
+    refuse("nowhere to write, with a picture", left, right, "--disparities", 32, "-o", folder / "no/where.pfm", "--png",
+           picture, mentions=["where.pfm"], left=[picture])
     refuse("nowhere for the picture", *pair, "--disparities", 32, "--png", folder / "no/where.png",
            mentions=["where.png"], left=[out])
     refuse("picture of another format", *pair, "--disparities", 32, "--png", folder / "p.jpg", mentions=["--png"])
     refuse("output twice", left, right, "--disparities", 32, "-o", picture, "--png", folder / "../" / folder.name /
            "out.png", mentions=["--png"], left=[picture])
-    refuse("output twice, one name with a folder", left, right, "--disparities", 32, "-o", picture.name, "--png",
-           f"./{picture.name}", mentions=["--png", "--out"])
+    refuse("output twice, in the folder it runs in", left, right, "--disparities", 32, "-o", "twice.png", "--png",
+           "./twice.png", mentions=["--png"], left=[pathlib.Path("twice.png")])
+    refuse("output without a name", left, right, "--disparities", 32, "-o", "", mentions=["--out", "empty"])
+    refuse("picture without a name", *pair, "--disparities", 32, "--png", "", mentions=["--png", "empty"], left=[out])
+    refuse("input without a name", "", right, "--disparities", 32, "-o", out, mentions=["No such file"], left=[out])
     before = (folder / "r.png").read_bytes()
     refuse("output over the input", folder / "l.pgm", folder / "r.png", "--disparities", 16, "-o", folder / "r.png",
            mentions=["r.png", "--out"])
@@ -184,4 +207,5 @@ with tempfile.TemporaryDirectory() as name:
     make_scene("test_tarsier_match", scene)
     real_pair(scene, folder)
     small_pair(folder)
+    full_disk(folder)
     bad_input(scene, folder)

@@ -1,11 +1,5 @@
-/*
- * Outputs that would destroy an input or each other.
- *
- * SPDX-License-Identifier: Apache-2.0
- */
+/* Outputs against inputs. SPDX-License-Identifier: Apache-2.0 */
 #include "tsr/host/output_files.h"
-
-#include <algorithm>
 
 #include "tsr/host/input_error.h"
 
@@ -16,35 +10,44 @@ namespace
 
 namespace fs = std::filesystem;
 
+/* Absolute first: weakly_canonical() leaves a relative name as it is where nothing of it exists. */
 bool is_same_file(const fs::path &a, const fs::path &b)
 {
     std::error_code error;
-    if (fs::equivalent(a, b, error) && !error) {
-        return true;
-    }
-    /* What does not exist yet is resolved as far as it does, which needs a whole path. */
-    error.clear();
-    return fs::weakly_canonical(fs::absolute(a), error) == fs::weakly_canonical(fs::absolute(b), error) && !error;
+    const fs::path whole_a = fs::weakly_canonical(fs::absolute(a, error), error);
+    const fs::path whole_b = fs::weakly_canonical(fs::absolute(b, error), error);
+    return !error && !whole_a.empty() && whole_a == whole_b;
 }
 
 } // namespace
 
-void check_output_files(std::span<const OutputFile> outputs, std::span<const fs::path> inputs)
+void check_outputs(const std::vector<OutputFile> &outputs, const std::vector<fs::path> &inputs)
 {
     for (std::size_t i = 0; i < outputs.size(); i++) {
-        const OutputFile &output = outputs[i];
-        if (output.file.empty()) {
-            continue;
-        }
-        if (std::any_of(inputs.begin(), inputs.end(),
-                        [&](const fs::path &input) { return is_same_file(output.file, input); })) {
-            throw InputError(output.file.string(), output.option, "is an input");
-        }
-        for (const OutputFile &other : outputs.first(i)) {
-            if (!other.file.empty() && is_same_file(output.file, other.file)) {
-                throw InputError(output.file.string(), output.option, "is the same file as " + other.option);
+        for (const fs::path &input : inputs) {
+            if (is_same_file(outputs[i].file, input)) {
+                throw InputError(outputs[i].file.string(), outputs[i].option, "is an input");
             }
         }
+        for (std::size_t earlier = 0; earlier < i; earlier++) {
+            if (is_same_file(outputs[i].file, outputs[earlier].file)) {
+                throw InputError(outputs[i].file.string(), outputs[i].option,
+                                 std::string("is the same file as ") + outputs[earlier].option);
+            }
+        }
+    }
+}
+
+std::string refuse_empty_name(const std::string &name)
+{
+    return name.empty() ? "the name is empty" : "";
+}
+
+EarlierOutput::~EarlierOutput()
+{
+    if (!file_.empty()) {
+        std::error_code ignored;
+        fs::remove(file_, ignored);
     }
 }
 

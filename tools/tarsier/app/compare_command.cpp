@@ -17,6 +17,7 @@
 #include "commands.h"
 #include "tsr/host/image_file.h"
 #include "tsr/host/input_error.h"
+#include "tsr/host/output_files.h"
 #include "tsr/stereo/disparity_file.h"
 #include "tsr/stereo/map_quality.h"
 
@@ -160,7 +161,7 @@ Command declare_compare(CLI::App &command)
     auto options = std::make_shared<CompareOptions>();
     command.add_option("map", options->map, "disparity map: PFM, or PNG of 16 bits, px = value / 256")->required();
     command.add_option("truth", options->truth, "true disparities, in either format")->required();
-    command.add_option("--mask", options->mask, "judge only where this picture is 255");
+    command.add_option("--mask", options->mask, "judge only where this picture is 255")->check(refuse_empty_name);
     command.add_option("--range", options->range_px, "dynamic range of PSNR and SSIM, px; default: largest truth");
     command.add_flag("--json", options->json, "print JSON");
     return [options] { return compare(*options); };

@@ -5,7 +5,6 @@
  */
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -27,20 +26,36 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-/* Before anything is read: outputs that would destroy an input or each other. */
-void check_outputs(const MatchOptions &options)
+/* Largest whole disparity of a 16-bit PNG, px. */
+constexpr int kPngDisparityMax = 65535 / kDisparityPngScale;
+
+void check_range(const MatchOptions &options)
 {
-    const DisparityFormat format = disparity_format(options.out, "--out");
-    if (format == DisparityFormat::kPng && options.search_start < 0) {
+    const bool is_png = disparity_format(options.out, "--out") == DisparityFormat::kPng;
+    if (is_png && options.search_start < 0) {
         throw InputError(options.out.string(), "--out",
                          "a PNG holds no disparity below 0, which --search-start asks for: write .pfm");
     }
+    const int disparities = std::min(options.disparities, static_cast<int>(TSR_DISPARITY_COUNT_MAX));
+    if (is_png && options.search_start > kPngDisparityMax + 1 - disparities) {
+        throw InputError(options.out.string(), "--out",
+                         "a PNG holds no disparity above " + std::to_string(kPngDisparityMax) +
+                             " px, which --search-start asks for: write .pfm");
+    }
+}
+
+/* Before anything is read. */
+void check_files(const MatchOptions &options)
+{
+    check_range(options);
     if (!options.picture.empty() && options.picture.extension() != ".png") {
         throw InputError(options.picture.string(), "--png", "the name does not end in .png");
     }
-    const OutputFile outputs[] = {{options.out, "--out"}, {options.picture, "--png"}};
-    const std::filesystem::path inputs[] = {options.left, options.right};
-    check_output_files(outputs, inputs);
+    std::vector<OutputFile> outputs = {{options.out, "--out"}};
+    if (!options.picture.empty()) {
+        outputs.push_back({options.picture, "--png"});
+    }
+    check_outputs(outputs, {options.left, options.right});
 }
 
 GrayImage read_right(const MatchOptions &options, const ImageSize &size)
@@ -78,7 +93,9 @@ void write_outputs(const MatchOptions &options, const StereoResult &result, cons
         write_png(options.picture,
                   colour_disparity(result.disparity_q4, config.width, config.height, config.disparities));
     }
+    EarlierOutput picture(options.picture);
     write_disparity_file(options.out, view_disparity(result, config));
+    picture.keep();
 }
 
 /* A test that is off is null. */
@@ -125,7 +142,7 @@ void print_text(const MatchOptions &options, const StereoPipeline &pipeline, con
 
 int match(const MatchOptions &options)
 {
-    check_outputs(options);
+    check_files(options);
     const GrayImage left = read_gray_image(options.left);
     const StereoOptions stereo = read_match_options(options, left.size());
     const GrayImage right = read_right(options, left.size());

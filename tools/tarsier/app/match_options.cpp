@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "tsr/host/input_error.h"
+#include "tsr/host/output_files.h"
 
 namespace tsr
 {
@@ -58,9 +59,9 @@ constexpr std::array kFields = {
     Field{"lr_tolerance_px", "--lr", "1 .. 127, or off"},
     Field{"search_start_px", "--search-start", "at most width - disparities, to either side"},
     Field{"min_size", "--speckle-size", "2 .. 4096"},
-    Field{"max_difference_q4", "--speckle-difference", "1/16 .. 4095 px"},
+    Field{"max_difference_q4", "--speckle-difference", "1/16 .. 4095 15/16 px"},
     Field{"iterations", "--diffusion-iterations", "1 .. 100"},
-    Field{"edge_q4", "--diffusion-edge", "1/16 .. 15 px"},
+    Field{"edge_q4", "--diffusion-edge", "1/16 .. 15 15/16 px"},
 };
 
 [[noreturn]] void refuse(std::string_view field)
@@ -209,8 +210,10 @@ void declare_match_options(CLI::App &command, MatchOptions &options)
                        "largest step inside an island, px; 1 unless told");
     command.add_option("--diffusion-iterations", options.diffusion_iterations, "1 .. 100; 5 unless told");
     command.add_option("--diffusion-edge", options.diffusion_edge_px, "what counts as an edge, px; 1 unless told");
-    command.add_option("-o,--out", options.out, "the map: .pfm, or .png of 16 bits, px = value / 256")->required();
-    command.add_option("--png", options.picture, "the map in colours, a PNG to look at");
+    command.add_option("-o,--out", options.out, "the map: .pfm, or .png of 16 bits, px = value / 256")
+        ->required()
+        ->check(refuse_empty_name);
+    command.add_option("--png", options.picture, "the map in colours, a PNG to look at")->check(refuse_empty_name);
     command.add_flag("--json", options.json, "print JSON");
 }
 

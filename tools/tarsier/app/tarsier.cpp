@@ -8,9 +8,12 @@
  *
  * SPDX-License-Identifier: Apache-2.0
  */
+#include <cstdio>
+#include <iostream>
 
 #include "commands.h"
 #include "tsr/host/command_line.h"
+#include "tsr/host/input_error.h"
 
 namespace
 {
@@ -38,12 +41,25 @@ void declare(CLI::App &app, tsr::Command &chosen)
     }
 }
 
+/* Figures that standard output did not take are lost. */
+void expect_printed()
+{
+    std::cout.flush();
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout) {
+        throw tsr::InputError("standard output", "write", "what was to be printed is lost");
+    }
+}
+
 } // namespace
 
 int main(int argc, char **argv)
 {
     tsr::Command chosen;
-    const auto run = [&] { return chosen(); };
+    const auto run = [&] {
+        const int status = chosen();
+        expect_printed();
+        return status;
+    };
     return tsr::run_command_line({"tarsier", "Tools of Tarsier.", [&](CLI::App &app) { declare(app, chosen); }, run},
                                  argc, argv);
 }

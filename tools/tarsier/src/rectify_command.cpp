@@ -2,6 +2,7 @@
 #include "tsr/stage/rectify_command.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 
@@ -37,6 +38,12 @@ RectifyOptions rectify_options(const RectifyTableOptions &options)
 {
     if ((options.width == 0) != (options.height == 0)) {
         throw InputError("command line", "--width, --height", "give both or none");
+    }
+    if (options.zoom && !(*options.zoom >= 0 && *options.zoom <= 1)) {
+        throw InputError("command line", "--zoom", "takes 0 .. 1");
+    }
+    if (options.unit_mm && !(*options.unit_mm > 0 && std::isfinite(*options.unit_mm))) {
+        throw InputError("command line", "--unit-mm", "takes a number above 0");
     }
     RectifyOptions chosen;
     chosen.output = {options.width, options.height};
@@ -97,16 +104,24 @@ void print_toml(const StereoCalibration &calibration, const Rectification &recti
     }
 }
 
+void check_files(const RectifyTableOptions &options)
+{
+    std::vector<OutputFile> outputs = {{options.table, "--out"}};
+    if (!options.c_header.empty()) {
+        outputs.push_back({options.c_header, "--c-header"});
+    }
+    check_outputs(outputs, options.calibration);
+}
+
 } // namespace
 
 void write_rectify_table(const RectifyTableOptions &options)
 {
+    check_files(options);
     const RectifyOptions chosen = rectify_options(options);
-    const OutputFile outputs[] = {{options.table, "--out"}, {options.c_header, "--c-header"}};
-    check_output_files(outputs, options.calibration);
     CalibrationUnits units;
     units.size = parse_size(options.calibrated, "--calibrated");
-    units.unit_mm = options.unit_mm;
+    units.unit_mm = options.unit_mm.value_or(0.0);
     const StereoCalibration calibration = read_calibration(options.calibration, units);
     if (!options.calibrated.empty() && calibration.left.size != units.size) {
         throw InputError("command line", "--calibrated",
@@ -118,7 +133,9 @@ void write_rectify_table(const RectifyTableOptions &options)
     if (!options.c_header.empty()) {
         write_file_atomically(options.c_header, rectify_c_header(table, rectification, c_name(options.c_header)));
     }
+    EarlierOutput header(options.c_header);
     write_file_atomically(options.table, std::span<const std::uint8_t>(table.bytes));
+    header.keep();
     if (options.json) {
         std::cout << as_json(calibration, rectification, table).dump(2) << '\n';
     } else {

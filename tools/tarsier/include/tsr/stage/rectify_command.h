@@ -25,7 +25,7 @@ struct RectifyTableOptions {
     int step = 0;
     std::optional<double> zoom;
     bool separate_centres = false;
-    double unit_mm = 0;
+    std::optional<double> unit_mm; /* none: the format's own */
     bool json = false;
 };
 
