@@ -96,7 +96,7 @@ static const char *bad_field(const struct tsr_match_config *config)
     if (config->height < TSR_MATCH_WINDOW_MIN || config->height > TSR_IMAGE_HEIGHT_MAX) {
         return "height";
     }
-    if (config->disparities < TSR_MATCH_DISPARITIES_MIN || config->disparities > TSR_DISPARITY_COUNT_MAX ||
+    if (config->disparities < TSR_MATCH_DISPARITIES_MIN || config->disparities > TSR_MATCH_DISPARITIES_MAX ||
         config->disparities % TSR_MATCH_LANES != 0 || config->disparities > config->width) {
         return "disparities";
     }

@@ -68,8 +68,8 @@ struct tsr_match_census_kernel {
      */
     void (*add_census)(const struct tsr_match *match, unsigned y, unsigned times);
     void (*census_row)(const struct tsr_match *match, unsigned y, unsigned y_new, unsigned y_old);
-    /* smooth: costs of the row y that was described last, eq. (41), and row y of the map from those of rows y - 1 ..
-     * y + 1 and the paths, eqs. (42) to (46). Rows in ascending order. */
+    /* smooth: costs of the row y that was described last, eq. (41), or what the kernel makes of them, and row y of the
+     * map from those of rows y - 1 .. y + 1 and the paths, eqs. (42) to (46). Rows in ascending order. */
     void (*cost_row)(const struct tsr_match *match, unsigned y);
     void (*smooth_row)(const struct tsr_match *match, unsigned y);
 };

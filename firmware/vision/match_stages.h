@@ -9,7 +9,8 @@
  *   choices   uint16_t [W]    what every left pixel of the row chose, TSR_MATCH_CHOICE()
  *   texture   uint8_t [W]     column sums of |P_left - cap|
  *
- * and what the census modes have more (match_census.h). The prefilter runs before
+ * and what the census and plain modes have otherwise or more (match_census.h,
+ * match_plain.h). The prefilter runs before
  * all this and uses the room of columns for the unfiltered rows above (left and
  * right) and a row of vertical sums.
  *
@@ -41,7 +42,6 @@ struct tsr_match_scratch {
 #define TSR_MATCH_CLAIM_OF(sum, shift, d) ((uint16_t)((unsigned)(sum) >> (shift) << 7 | (unsigned)(d)))
 #define TSR_MATCH_CLAIM(sum, d) TSR_MATCH_CLAIM_OF(sum, 2, d) /* of the SAD modes */
 #define TSR_MATCH_CLAIM_D(claim) ((claim)&127)
-#define TSR_MATCH_CLAIM_NONE UINT16_MAX
 
 /* d* with its offset of -8 .. 8 sixteenths, before eq. (17). A row of the map takes the place of frame rows that are
  * still read while it is found out, so it is written at the end. */

@@ -18,7 +18,7 @@ struct verdicts {
 
 struct choices {
     _Alignas(32) int16_t values[PIXELS_MAX]; /* what the map holds unless eq. (17) fails */
-    uint16_t claims[PIXELS_MAX];             /* CLAIM_NONE where there is no d* */
+    uint16_t claims[PIXELS_MAX];             /* all ones where there is no d* */
     uint16_t rights[PIXELS_MAX];             /* the right pixel, or any where there is no d* */
 };
 

@@ -37,11 +37,16 @@ static inline int match_is_allowed(const struct tsr_match_config *config)
         config->search_start_px < -room || config->search_start_px > room) {
         return 0;
     }
+    if (!match_is_threshold(config->uniqueness_percent, 100) || !match_is_threshold(config->lr_tolerance_px, 127)) {
+        return 0;
+    }
+    if (config->mode != TSR_MATCH_SAD && config->mode != TSR_MATCH_SAD8) {
+        return 1; /* others ignore cap and texture */
+    }
     const unsigned by_columns = 63u / window < 7u ? 63u / window : 7u;
     const unsigned by_window = 127u / (window * window);
     const unsigned cap_max = config->mode == TSR_MATCH_SAD8 && by_window < by_columns ? by_window : by_columns;
-    return cap_max > 0 && config->prefilter_cap <= cap_max && match_is_threshold(config->uniqueness_percent, 100) &&
-           match_is_threshold(config->texture_min, 127) && match_is_threshold(config->lr_tolerance_px, 127);
+    return cap_max > 0 && config->prefilter_cap <= cap_max && match_is_threshold(config->texture_min, 127);
 }
 
 #endif

@@ -1,11 +1,5 @@
-# Cortex-M55 with MVE (Helium), as on QEMU's mps3-an547; otherwise as cortex-m4.cmake.
-set(CMAKE_SYSTEM_NAME Generic)
+# Cortex-M55 with MVE (Helium), as on QEMU's mps3-an547.
 set(CMAKE_SYSTEM_PROCESSOR cortex-m55)
-set(CMAKE_C_COMPILER arm-none-eabi-gcc)
-set(CMAKE_CXX_COMPILER arm-none-eabi-g++)
-set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
-set(CMAKE_EXECUTABLE_SUFFIX_C .elf)
-set(CMAKE_C_FLAGS_INIT "-mcpu=cortex-m55 -mthumb -mfloat-abi=hard -ffunction-sections -fdata-sections -fcallgraph-info=su")
-set(CMAKE_C_FLAGS_RELEASE "-O3 -g -DNDEBUG" CACHE STRING "Flags of a release build")
-set(CMAKE_EXE_LINKER_FLAGS_INIT "-nostartfiles -Wl,--gc-sections -Wl,--fatal-warnings")
+set(tsr_core_flags "-mcpu=cortex-m55")
 set(TSR_BOARD mps3-an547)
+include(${CMAKE_CURRENT_LIST_DIR}/cortex-m.cmake)
