@@ -10,11 +10,14 @@
 static enum tsr_status start_encoding(struct tsr_node *node, struct tsr_map_encoder *encoder)
 {
     const struct tsr_match_config *match = &node->config.match;
-    const struct tsr_map_info info = {match->width, match->height, node->disparities, node->config.step_log2,
-                                      node->config.d0_q4};
+    const struct tsr_map_info info = {.width = match->width,
+                                      .height = match->height,
+                                      .disparities = node->disparities,
+                                      .step_log2 = node->config.step_log2,
+                                      .d0_q4 = node->config.d0_q4};
     size_t in_front = TSR_MESSAGE_HEADER_LEN + TSR_BODY_MAP_HEADER_LEN + node->reference_len;
     uint16_t *rows = (uint16_t *)(void *)(node->scratch + sizeof *encoder);
-    return tsr_map_encode_start(encoder, &info, node->message + in_front,
+    return tsr_map_encode_start(encoder, &info, NULL, node->message + in_front,
                                 node->message_cap - in_front - TSR_CCM_TAG_LEN, rows,
                                 (node->scratch_cap - sizeof *encoder) / sizeof *rows);
 }

@@ -20,8 +20,8 @@ std::optional<DecodedMap> decode_map(std::span<const std::uint8_t> coded)
     map.disparity_q4.resize(width * map.info.height);
     std::vector<std::uint16_t> scratch(TSR_MAP_SCRATCH_COUNT(width));
     const auto decoder = std::make_unique<tsr_map_decoder>();
-    if (tsr_map_decode_start(decoder.get(), coded.data(), coded.size(), scratch.data(), scratch.size(), &map.info) !=
-            TSR_OK ||
+    if (tsr_map_decode_start(decoder.get(), coded.data(), coded.size(), nullptr, scratch.data(), scratch.size(),
+                             &map.info) != TSR_OK ||
         tsr_map_decode_rows(decoder.get(), map.disparity_q4.data(), width, map.info.height) != TSR_OK) {
         return std::nullopt;
     }

@@ -46,11 +46,12 @@ static void code_map_again(const struct tsr_map_info *info)
     const size_t scratch_count = sizeof fuzz_map_scratch / sizeof *fuzz_map_scratch;
     struct tsr_map_info read;
     size_t len = 0;
-    require_map(tsr_map_encode_start(&encoder, info, fuzz_map_out, tsr_map_encoded_len_max(info), fuzz_map_scratch,
-                                     scratch_count) == TSR_OK);
+    require_map(tsr_map_encode_start(&encoder, info, NULL, fuzz_map_out, tsr_map_encoded_len_max(info),
+                                     fuzz_map_scratch, scratch_count) == TSR_OK);
     require_map(tsr_map_encode_rows(&encoder, fuzz_map, info->width, info->height) == TSR_OK);
     require_map(tsr_map_encode_finish(&encoder, &len) == TSR_OK);
-    require_map(tsr_map_decode_start(&decoder, fuzz_map_out, len, fuzz_map_scratch, scratch_count, &read) == TSR_OK);
+    require_map(tsr_map_decode_start(&decoder, fuzz_map_out, len, NULL, fuzz_map_scratch, scratch_count, &read) ==
+                TSR_OK);
     require_map(tsr_map_decode_rows(&decoder, fuzz_map_again, info->width, info->height) == TSR_OK);
     require_map(memcmp(fuzz_map, fuzz_map_again, (size_t)info->width * info->height * sizeof *fuzz_map) == 0);
 }
@@ -59,8 +60,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t len)
 {
     static struct tsr_map_decoder decoder;
     struct tsr_map_info info;
-    if (tsr_map_decode_start(&decoder, bytes, len, fuzz_map_scratch, sizeof fuzz_map_scratch / sizeof *fuzz_map_scratch,
-                             &info) != TSR_OK) {
+    if (tsr_map_decode_start(&decoder, bytes, len, NULL, fuzz_map_scratch,
+                             sizeof fuzz_map_scratch / sizeof *fuzz_map_scratch, &info) != TSR_OK) {
         return 0;
     }
     const int small = (size_t)info.width * info.height <= MAP_PIXELS_MAX;

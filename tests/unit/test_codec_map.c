@@ -35,7 +35,7 @@ void tearDown(void) {}
 
 static enum tsr_status start(size_t cap)
 {
-    return tsr_map_encode_start(&encoder, &info, out, cap, scratch, SCRATCH_COUNT);
+    return tsr_map_encode_start(&encoder, &info, NULL, out, cap, scratch, SCRATCH_COUNT);
 }
 
 static size_t encode(void)
@@ -51,7 +51,7 @@ static void test_round_trip(void)
 {
     struct tsr_map_info read;
     const size_t len = encode();
-    TEST_ASSERT_EQUAL(TSR_OK, tsr_map_decode_start(&decoder, out, len, scratch, SCRATCH_COUNT, &read));
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_map_decode_start(&decoder, out, len, NULL, scratch, SCRATCH_COUNT, &read));
     TEST_ASSERT_EQUAL(TSR_OK, tsr_map_decode_rows(&decoder, decoded, WIDTH, HEIGHT));
     TEST_ASSERT_EQUAL_UINT16_ARRAY(map, decoded, WIDTH * HEIGHT);
     TEST_ASSERT_EQUAL(WIDTH, read.width);
@@ -64,7 +64,7 @@ static void test_round_trip(void)
 static void test_header_bytes(void)
 {
     (void)encode();
-    const uint8_t header[TSR_MAP_HEADER_LEN] = {0x01, 0x02, 31, WIDTH, 0, HEIGHT, 0, 0x0c, 0xfe};
+    const uint8_t header[TSR_MAP_HEADER_LEN] = {0x02, 0x12, 31, WIDTH, 0, HEIGHT, 0, 0x0c, 0xfe};
     TEST_ASSERT_EQUAL_HEX8_ARRAY(header, out, TSR_MAP_HEADER_LEN);
 }
 
@@ -88,17 +88,18 @@ static void test_length_of_literals(void)
 static void check_bad_info(struct tsr_map_info bad)
 {
     TEST_ASSERT_EQUAL(0, tsr_map_encoded_len_max(&bad));
-    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_start(&encoder, &bad, out, OUT_CAP, scratch, SCRATCH_COUNT));
+    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_start(&encoder, &bad, NULL, out, OUT_CAP, scratch, SCRATCH_COUNT));
     TEST_ASSERT_EACH_EQUAL_HEX8(0xa5, out, sizeof out);
 }
 
 static void test_start_refuses(void)
 {
-    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_start(NULL, &info, out, OUT_CAP, scratch, SCRATCH_COUNT));
-    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_start(&encoder, NULL, out, OUT_CAP, scratch, SCRATCH_COUNT));
-    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_start(&encoder, &info, NULL, OUT_CAP, scratch, SCRATCH_COUNT));
-    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_start(&encoder, &info, out, OUT_CAP, NULL, SCRATCH_COUNT));
-    TEST_ASSERT_EQUAL(TSR_ERR_NOBUF, tsr_map_encode_start(&encoder, &info, out, OUT_CAP, scratch, SCRATCH_COUNT - 1));
+    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_start(NULL, &info, NULL, out, OUT_CAP, scratch, SCRATCH_COUNT));
+    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_start(&encoder, NULL, NULL, out, OUT_CAP, scratch, SCRATCH_COUNT));
+    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_start(&encoder, &info, NULL, NULL, OUT_CAP, scratch, SCRATCH_COUNT));
+    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_start(&encoder, &info, NULL, out, OUT_CAP, NULL, SCRATCH_COUNT));
+    TEST_ASSERT_EQUAL(TSR_ERR_NOBUF,
+                      tsr_map_encode_start(&encoder, &info, NULL, out, OUT_CAP, scratch, SCRATCH_COUNT - 1));
     TEST_ASSERT_EQUAL(TSR_ERR_NOBUF, start(TSR_MAP_HEADER_LEN - 1));
     TEST_ASSERT_EACH_EQUAL_HEX8(0xa5, out, sizeof out);
     TEST_ASSERT_EQUAL(TSR_OK, start(TSR_MAP_HEADER_LEN));
@@ -123,6 +124,9 @@ static void test_start_refuses_bad_info(void)
     check_bad_info(bad);
     bad = info;
     bad.step_log2 = TSR_MAP_STEP_LOG2_MAX + 1;
+    check_bad_info(bad);
+    bad = info;
+    bad.near = TSR_MAP_NEAR_MAX + 1;
     check_bad_info(bad);
 }
 
@@ -180,17 +184,18 @@ static void check_header_refused(enum tsr_status expected, unsigned at, uint8_t 
     const size_t len = encode();
     out[at] = value;
     TEST_ASSERT_EQUAL(expected, tsr_map_read_info(out, len, &untouched));
-    TEST_ASSERT_EQUAL(expected, tsr_map_decode_start(&decoder, out, len, scratch, SCRATCH_COUNT, &untouched));
+    TEST_ASSERT_EQUAL(expected, tsr_map_decode_start(&decoder, out, len, NULL, scratch, SCRATCH_COUNT, &untouched));
     TEST_ASSERT_EQUAL(77, untouched.width);
 }
 
 static void test_header_refused(void)
 {
-    check_header_refused(TSR_ERR_VERSION, 0, 0x02);
-    check_header_refused(TSR_ERR_VERSION, 0, 0x00);
-    check_header_refused(TSR_ERR_VERSION, 0, 0x11);
-    check_header_refused(TSR_ERR_VERSION, 1, 0x12);
-    check_header_refused(TSR_ERR_FORMAT, 1, 0x05);
+    check_header_refused(TSR_ERR_VERSION, 0, 0x01);
+    check_header_refused(TSR_ERR_VERSION, 0, 0x03);
+    check_header_refused(TSR_ERR_VERSION, 0, 0x22);
+    check_header_refused(TSR_ERR_VERSION, 1, 0x02);
+    check_header_refused(TSR_ERR_VERSION, 1, 0x22);
+    check_header_refused(TSR_ERR_FORMAT, 1, 0x15);
     check_header_refused(TSR_ERR_FORMAT, 2, 128);
     check_header_refused(TSR_ERR_FORMAT, 3, 0);
     check_header_refused(TSR_ERR_FORMAT, 4, 3);
@@ -202,13 +207,14 @@ static void test_decode_start_refuses(void)
 {
     struct tsr_map_info untouched = {.width = 77};
     const size_t len = encode();
-    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_decode_start(NULL, out, len, scratch, SCRATCH_COUNT, &untouched));
-    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_decode_start(&decoder, NULL, len, scratch, SCRATCH_COUNT, &untouched));
-    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_decode_start(&decoder, out, len, NULL, SCRATCH_COUNT, &untouched));
-    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_decode_start(&decoder, out, len, scratch, SCRATCH_COUNT, NULL));
-    TEST_ASSERT_EQUAL(TSR_ERR_NOBUF, tsr_map_decode_start(&decoder, out, len, scratch, SCRATCH_COUNT - 1, &untouched));
-    TEST_ASSERT_EQUAL(TSR_ERR_FORMAT,
-                      tsr_map_decode_start(&decoder, out, TSR_MAP_HEADER_LEN - 1, scratch, SCRATCH_COUNT, &untouched));
+    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_decode_start(NULL, out, len, NULL, scratch, SCRATCH_COUNT, &untouched));
+    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_decode_start(&decoder, NULL, len, NULL, scratch, SCRATCH_COUNT, &untouched));
+    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_decode_start(&decoder, out, len, NULL, NULL, SCRATCH_COUNT, &untouched));
+    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_decode_start(&decoder, out, len, NULL, scratch, SCRATCH_COUNT, NULL));
+    TEST_ASSERT_EQUAL(TSR_ERR_NOBUF,
+                      tsr_map_decode_start(&decoder, out, len, NULL, scratch, SCRATCH_COUNT - 1, &untouched));
+    TEST_ASSERT_EQUAL(TSR_ERR_FORMAT, tsr_map_decode_start(&decoder, out, TSR_MAP_HEADER_LEN - 1, NULL, scratch,
+                                                           SCRATCH_COUNT, &untouched));
     TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_read_info(NULL, len, &untouched));
     TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_read_info(out, len, NULL));
     TEST_ASSERT_EQUAL(77, untouched.width);
@@ -218,7 +224,7 @@ static void test_decode_rows_refuses(void)
 {
     struct tsr_map_info read;
     const size_t len = encode();
-    TEST_ASSERT_EQUAL(TSR_OK, tsr_map_decode_start(&decoder, out, len, scratch, SCRATCH_COUNT, &read));
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_map_decode_start(&decoder, out, len, NULL, scratch, SCRATCH_COUNT, &read));
     TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_decode_rows(NULL, decoded, WIDTH, 1));
     TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_decode_rows(&decoder, NULL, WIDTH, 1));
     TEST_ASSERT_EQUAL(TSR_ERR_SIZE, tsr_map_decode_rows(&decoder, decoded, WIDTH - 1, 1));
@@ -230,6 +236,72 @@ static void test_decode_rows_refuses(void)
     TEST_ASSERT_EQUAL(TSR_ERR_SIZE, tsr_map_decode_rows(&decoder, decoded, WIDTH, 1));
 }
 
+static void decode_all(const uint8_t *bytes, size_t len, const struct tsr_map_reference *against)
+{
+    struct tsr_map_info read;
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_map_decode_start(&decoder, bytes, len, against, scratch, SCRATCH_COUNT, &read));
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_map_decode_rows(&decoder, decoded, WIDTH, HEIGHT));
+}
+
+/* One step off at most, and matches exactly where they were. */
+static void test_near(void)
+{
+    struct tsr_map_info near = info;
+    near.near = 1;
+    size_t len = 0;
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_start(&encoder, &near, NULL, out, OUT_CAP, scratch, SCRATCH_COUNT));
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_rows(&encoder, map, WIDTH, HEIGHT));
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_finish(&encoder, &len));
+    TEST_ASSERT_EQUAL_HEX8(0x1a, out[1]);
+    decode_all(out, len, NULL);
+    unsigned different = 0;
+    for (unsigned i = 0; i < WIDTH * HEIGHT; i++) {
+        TEST_ASSERT_EQUAL(map[i] == TSR_DISPARITY_INVALID, decoded[i] == TSR_DISPARITY_INVALID);
+        TEST_ASSERT_UINT16_WITHIN(4, map[i], decoded[i]);
+        different += map[i] != decoded[i];
+    }
+    TEST_ASSERT_GREATER_THAN(0, different);
+    TEST_ASSERT_LESS_THAN(encode(), len);
+}
+
+static void test_against_a_reference(void)
+{
+    static uint16_t earlier[HEIGHT * (WIDTH + 3)];
+    struct tsr_map_reference against = {earlier, WIDTH + 3, 0x1234};
+    struct tsr_map_info read = {.width = 77};
+    const size_t alone_len = encode();
+    for (unsigned i = 0; i < WIDTH * HEIGHT; i++) {
+        earlier[i / WIDTH * (WIDTH + 3) + i % WIDTH] = i % WIDTH == 13 ? TSR_DISPARITY_INVALID : map[i];
+    }
+    size_t len = 0;
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_start(&encoder, &info, &against, out, OUT_CAP, scratch, SCRATCH_COUNT));
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_rows(&encoder, map, WIDTH, HEIGHT));
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_finish(&encoder, &len));
+    TEST_ASSERT_LESS_THAN(alone_len, len);
+    const uint8_t header[] = {0x12, 0x12, 31, WIDTH, 0, HEIGHT, 0, 0x0c, 0xfe, 0x34, 0x12};
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(header, out, sizeof header);
+    decode_all(out, len, &against);
+    TEST_ASSERT_EQUAL_UINT16_ARRAY(map, decoded, WIDTH * HEIGHT);
+
+    TEST_ASSERT_EQUAL(TSR_ERR_REFERENCE, tsr_map_decode_start(&decoder, out, len, NULL, scratch, SCRATCH_COUNT, &read));
+    against.id++;
+    TEST_ASSERT_EQUAL(TSR_ERR_REFERENCE,
+                      tsr_map_decode_start(&decoder, out, len, &against, scratch, SCRATCH_COUNT, &read));
+    against.id--;
+    against.stride = WIDTH - 1;
+    TEST_ASSERT_EQUAL(TSR_ERR_SIZE, tsr_map_decode_start(&decoder, out, len, &against, scratch, SCRATCH_COUNT, &read));
+    TEST_ASSERT_EQUAL(TSR_ERR_SIZE,
+                      tsr_map_encode_start(&encoder, &info, &against, out, OUT_CAP, scratch, SCRATCH_COUNT));
+    against.map = NULL;
+    TEST_ASSERT_EQUAL(TSR_ERR_ARG,
+                      tsr_map_encode_start(&encoder, &info, &against, out, OUT_CAP, scratch, SCRATCH_COUNT));
+    TEST_ASSERT_EQUAL(TSR_ERR_FORMAT, tsr_map_read_info(out, TSR_MAP_HEADER_LEN, &read));
+    TEST_ASSERT_EQUAL(77, read.width);
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_map_read_info(out, TSR_MAP_HEADER_LEN_MAX, &read));
+    TEST_ASSERT_TRUE(read.has_reference);
+    TEST_ASSERT_EQUAL_HEX16(0x1234, read.reference_id);
+}
+
 /* One of 256 constant streams asks for a difference that leaves the range. */
 static void test_label_out_of_range(void)
 {
@@ -239,7 +311,7 @@ static void test_label_out_of_range(void)
     for (unsigned value = 0; value < 256 && status != TSR_ERR_FORMAT; value++) {
         memset(out + TSR_MAP_HEADER_LEN, (int)value, OUT_CAP - TSR_MAP_HEADER_LEN);
         memset(decoded, 0x5a, sizeof decoded);
-        TEST_ASSERT_EQUAL(TSR_OK, tsr_map_decode_start(&decoder, out, OUT_CAP, scratch, SCRATCH_COUNT, &read));
+        TEST_ASSERT_EQUAL(TSR_OK, tsr_map_decode_start(&decoder, out, OUT_CAP, NULL, scratch, SCRATCH_COUNT, &read));
         status = tsr_map_decode_rows(&decoder, decoded, WIDTH, HEIGHT);
     }
     TEST_ASSERT_EQUAL(TSR_ERR_FORMAT, status);
@@ -255,8 +327,8 @@ static void test_label_out_of_range(void)
 static void test_state_is_small(void)
 {
     const size_t scratch_len = TSR_MAP_SCRATCH_COUNT(320) * sizeof(uint16_t);
-    TEST_ASSERT_LESS_OR_EQUAL(8192, sizeof(struct tsr_map_encoder) + scratch_len);
-    TEST_ASSERT_LESS_OR_EQUAL(8192, sizeof(struct tsr_map_decoder) + scratch_len);
+    TEST_ASSERT_LESS_OR_EQUAL(6 * 1024, sizeof(struct tsr_map_encoder) + scratch_len);
+    TEST_ASSERT_LESS_OR_EQUAL(6 * 1024, sizeof(struct tsr_map_decoder) + scratch_len);
 }
 
 int main(void)
@@ -272,6 +344,8 @@ int main(void)
     RUN_TEST(test_header_refused);
     RUN_TEST(test_decode_start_refuses);
     RUN_TEST(test_decode_rows_refuses);
+    RUN_TEST(test_near);
+    RUN_TEST(test_against_a_reference);
     RUN_TEST(test_label_out_of_range);
     RUN_TEST(test_state_is_small);
     return UNITY_END();

@@ -75,10 +75,15 @@ size_t workbench_run_map(const struct workbench_case *bench, const uint16_t *map
 {
     size_t pixels = (size_t)bench->width * bench->height;
     const size_t scratch_count = sizeof map_scratch / sizeof map_scratch[0];
-    struct tsr_map_info info = {bench->width, bench->height, bench->disparities, STEP_LOG2, D0_Q4};
+    struct tsr_map_info info = {.width = bench->width,
+                                .height = bench->height,
+                                .disparities = bench->disparities,
+                                .step_log2 = STEP_LOG2,
+                                .d0_q4 = D0_Q4};
     size_t len = 0;
     workbench_begin();
-    enum tsr_status status = tsr_map_encode_start(&map_encoder, &info, coded, coded_cap, map_scratch, scratch_count);
+    enum tsr_status status =
+        tsr_map_encode_start(&map_encoder, &info, NULL, coded, coded_cap, map_scratch, scratch_count);
     for (unsigned row = 0; row < bench->height && status >= TSR_OK; row += ROWS_PER_STEP) {
         status = tsr_map_encode_rows(&map_encoder, map + (size_t)row * bench->width, bench->width, ROWS_PER_STEP);
     }
@@ -90,7 +95,7 @@ size_t workbench_run_map(const struct workbench_case *bench, const uint16_t *map
     workbench_store("map_coded.out", coded, len);
 
     workbench_begin();
-    status = tsr_map_decode_start(&map_decoder, coded, len, map_scratch, scratch_count, &info);
+    status = tsr_map_decode_start(&map_decoder, coded, len, NULL, map_scratch, scratch_count, &info);
     for (unsigned row = 0; row < bench->height && status >= TSR_OK; row += ROWS_PER_STEP) {
         status =
             tsr_map_decode_rows(&map_decoder, map_decoded + (size_t)row * bench->width, bench->width, ROWS_PER_STEP);

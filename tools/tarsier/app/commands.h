@@ -21,6 +21,7 @@ Command declare_demo_scene(CLI::App &command);
 Command declare_compare(CLI::App &command);
 Command declare_match(CLI::App &command);
 Command declare_rectify_table(CLI::App &command);
+Command declare_train_prior(CLI::App &command);
 
 } // namespace tsr
 

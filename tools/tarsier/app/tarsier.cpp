@@ -5,6 +5,7 @@
  *   tarsier match LEFT RIGHT --disparities N -o OUT      a disparity map as a node computes it
  *   tarsier compare MAP TRUTH                            how good a disparity map is
  *   tarsier rectify-table CALIBRATION... -o TABLE        a node's rectification from a calibration
+ *   tarsier train-prior DIR... -o map_prior.c            what the map codec knows beforehand
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -28,6 +29,7 @@ constexpr Entry kCommands[] = {
     {"demo-scene", "write the demo's recorded frames and site", tsr::declare_demo_scene},
     {"match", "match a rectified pair as a node does", tsr::declare_match},
     {"rectify-table", "make a node's rectification table", tsr::declare_rectify_table},
+    {"train-prior", "learn the map codec's prior from maps", tsr::declare_train_prior},
     {"compare", "judge a disparity map by the truth", tsr::declare_compare},
 };
 

@@ -1,0 +1,56 @@
+/*
+ * The questions that the map codec would ask about a map, one by one, for
+ * whoever trains the tables that choose their contexts (docs/codec.md, 2.8).
+ * No node uses this, so none links it.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_CODEC_MAP_TRACE_H
+#define TSR_CODEC_MAP_TRACE_H
+
+#include "tsr/codec/map.h"
+
+/* Shape of the tables: a candidate's context is the rounded sum of one weight from each table of its kind; those
+ * beyond TSR_MAP_TABLE_COUNT_ALONE count only against a reference. */
+#define TSR_MAP_KIND_COUNT 6
+#define TSR_MAP_TABLE_COUNT_ALONE 5
+#define TSR_MAP_TABLE_COUNT 8
+#define TSR_MAP_TABLE_LEN 64
+#define TSR_MAP_LEVEL_COUNT 32
+#define TSR_MAP_WEIGHT_SCALE 8 /* weights are log-odds times this; a level is half a unit of log-odds */
+/* The first candidate's context: kind k has cells TSR_MAP_CANDIDATE_AT + k * TSR_MAP_LEVEL_COUNT + level. */
+#define TSR_MAP_CANDIDATE_AT 48
+
+/* What a map was coded as decides where its contexts start. */
+enum tsr_map_coding {
+    TSR_MAP_CODING_ALONE,
+    TSR_MAP_CODING_NEAR,
+    TSR_MAP_CODING_REFERENCE, /* near or not */
+    TSR_MAP_CODING_COUNT
+};
+
+struct tsr_map_question {
+    bool bit;                           /* the answer */
+    bool is_candidate;                  /* kind and index count, else cell */
+    uint8_t coding;                     /* of the map, enum tsr_map_coding */
+    uint8_t kind;                       /* 0 .. TSR_MAP_KIND_COUNT - 1 */
+    uint8_t table_count;                /* TSR_MAP_TABLE_COUNT or TSR_MAP_TABLE_COUNT_ALONE */
+    uint8_t index[TSR_MAP_TABLE_COUNT]; /* 0 .. TSR_MAP_TABLE_LEN - 1, table_count of them */
+    uint16_t cell;                      /* 0 .. TSR_MAP_CELL_COUNT - 1 */
+};
+
+typedef void (*tsr_map_question_fn)(void *user, const struct tsr_map_question *question);
+
+/* The context of a candidate under these weights (log-odds in eighths, of one kind): its sum in levels, 0 .. 31. */
+unsigned tsr_map_candidate_level(const int8_t weights[TSR_MAP_TABLE_COUNT][TSR_MAP_TABLE_LEN],
+                                 const uint8_t index[TSR_MAP_TABLE_COUNT], unsigned table_count);
+
+/*
+ * Tell every question of a map, borrowed, width elements a row; info and reference as for tsr_map_encode_start, model
+ * and scratch used meanwhile. Returns TSR_OK, or what tsr_map_encode_start or tsr_map_encode_rows would refuse.
+ */
+enum tsr_status tsr_map_trace(struct tsr_map_model *model, const struct tsr_map_info *info,
+                              const struct tsr_map_reference *reference, const uint16_t *map, uint16_t *scratch,
+                              size_t scratch_cap, tsr_map_question_fn tell, void *user);
+
+#endif

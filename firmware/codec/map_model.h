@@ -1,0 +1,98 @@
+/*
+ * The label model of the disparity-map codec, docs/codec.md, chapter 2: what
+ * the directions share.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_CODEC_MAP_MODEL_H
+#define TSR_CODEC_MAP_MODEL_H
+
+#include <stdbool.h>
+
+#include "tsr/codec/map_trace.h"
+
+/* Scratch holds three rows of labels, used in turn, with pads that stay "no match": outside the map there is none. */
+#define TSR_MAP_PAD_LEFT 3u
+#define TSR_MAP_PAD_RIGHT 2u
+#define TSR_MAP_ROW_COUNT 3u
+_Static_assert(TSR_MAP_SCRATCH_COUNT(0) == TSR_MAP_ROW_COUNT * (TSR_MAP_PAD_LEFT + TSR_MAP_PAD_RIGHT),
+               "the public header sizes the rows");
+
+/* A label is disparity >> step_log2, and this for TSR_DISPARITY_INVALID: at least 3,968 from every other label,
+ * while those differ by less than 2,048. It is positive as an int16_t. */
+#define TSR_MAP_LABEL(value, step_log2) ((uint16_t)((unsigned)(value) >> (step_log2)&0x7fffu))
+#define TSR_MAP_DIFFERENCE_INVALID 2048u
+
+/* Pixels that are coded alike, as labels or literally. */
+#define TSR_MAP_LITERAL_PIXELS 16u
+/* A map that has cost this much more than its literal size is stored literally until it is cheap again. */
+#define TSR_MAP_SLACK_LEN 256u
+
+/* Where each question's contexts begin among the cells. */
+enum {
+    TSR_MAP_FLAT_AT = 0, /* 48: is a flat neighbourhood continued? */
+    /* TSR_MAP_CANDIDATE_AT, by kind and level: is it this label? */
+    TSR_MAP_INVALID_AT = TSR_MAP_CANDIDATE_AT + TSR_MAP_KIND_COUNT * TSR_MAP_LEVEL_COUNT, /* 16 x 6: no match? */
+    TSR_MAP_PREDICTED_AT = TSR_MAP_INVALID_AT + 96,                                       /* 6 x 6: the prediction? */
+    TSR_MAP_SIGN_AT = TSR_MAP_PREDICTED_AT + 36,                                          /* 27: below it? */
+    TSR_MAP_NEARER_AT = TSR_MAP_SIGN_AT + 27,    /* 4 x 12: farther than 0, 1, 2, 3? */
+    TSR_MAP_FARTHER_AT = TSR_MAP_NEARER_AT + 48, /* 9: beyond bucket 4, 5 ...? */
+    TSR_MAP_HALF_AT = TSR_MAP_FARTHER_AT + 9,    /* 10: in the upper half of its bucket? */
+    TSR_MAP_CELLS_END = TSR_MAP_HALF_AT + 10
+};
+_Static_assert(TSR_MAP_CELLS_END == TSR_MAP_CELL_COUNT, "the public header sizes the model");
+
+/* What was learned from maps. */
+struct tsr_map_prior {
+    uint8_t id;           /* in the header, 1 .. 15 */
+    uint32_t matcher_crc; /* of the maps of the matcher it was trained for */
+    int8_t weights[TSR_MAP_KIND_COUNT][TSR_MAP_TABLE_COUNT][TSR_MAP_TABLE_LEN]; /* log-odds in eighths */
+    uint16_t cells[TSR_MAP_CODING_COUNT][TSR_MAP_CELL_COUNT];                   /* P(1), UQ0.16 */
+};
+extern const struct tsr_map_prior tsr_map_prior; /* map_prior.c, made by tarsier train-prior */
+
+static inline uint16_t *tsr_map_row_labels(const struct tsr_map_model *model, unsigned rows_up)
+{
+    const size_t at = (model->row + TSR_MAP_ROW_COUNT - rows_up) % TSR_MAP_ROW_COUNT;
+    return model->scratch + at * (model->info.width + TSR_MAP_PAD_LEFT + TSR_MAP_PAD_RIGHT) + TSR_MAP_PAD_LEFT;
+}
+
+/* The sum of what the tables say, rounded to levels of half a unit. The bias keeps the sum positive: eight weights of
+ * -128 .. 127. */
+static inline unsigned tsr_map_level(const int8_t (*weights)[TSR_MAP_TABLE_LEN], const uint8_t *index,
+                                     unsigned table_count)
+{
+    int sum = 1024 + 2;
+    for (unsigned table = 0; table < table_count; table++) {
+        sum += weights[table][index[table]];
+    }
+    const unsigned half_units = (unsigned)sum / 4u;
+    return half_units < 240u ? 0 : half_units > 271u ? 31u : half_units - 240u;
+}
+
+static inline unsigned tsr_map_choice_cell(unsigned kind, const uint8_t *index, unsigned table_count)
+{
+    return TSR_MAP_CANDIDATE_AT + TSR_MAP_LEVEL_COUNT * kind +
+           tsr_map_level(tsr_map_prior.weights[kind], index, table_count);
+}
+
+/* Check and begin: TSR_ERR_ARG, TSR_ERR_SIZE or TSR_ERR_NOBUF as tsr_map_encode_start says. */
+enum tsr_status tsr_map_model_start(struct tsr_map_model *model, const struct tsr_map_info *info,
+                                    const struct tsr_map_reference *reference, uint16_t *scratch, size_t scratch_cap);
+
+bool tsr_map_is_valid_info(const struct tsr_map_info *info);
+
+/* Is every disparity invalid, or a multiple of the step below 16 * disparities? */
+bool tsr_map_is_valid_row(const struct tsr_map_info *info, const uint16_t *row);
+
+/* Put a row of disparities, as labels, into row model->row of the scratch. */
+void tsr_map_take_row(struct tsr_map_model *model, const uint16_t *row);
+
+/* Code row model->row, whose labels stand in the scratch, and step to the next. With near > 0 the labels become those
+ * that a decoder will find. */
+void tsr_map_encode_row(struct tsr_map_model *model, struct tsr_range_encoder *range);
+
+/* Decode row model->row into the scratch and step to the next; false if it meets a label that does not exist. */
+bool tsr_map_decode_row(struct tsr_map_model *model, struct tsr_range_decoder *range);
+
+#endif

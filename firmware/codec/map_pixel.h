@@ -1,0 +1,385 @@
+/*
+ * One row through the label model, written once for every direction.
+ *
+ * The file that includes this has defined its side of the questions:
+ *
+ *   struct side               what answers them
+ *   side_bit(side, model, cell, bit)                one adaptive bit
+ *   side_choice(side, model, kind, index, table_count, bit)
+ *                             the same, its cell chosen by the trained tables
+ *   side_direct(side, value, bit_count)             equally likely bits
+ *   side_spent_bits(side)                           shifted out so far
+ *
+ * Every question takes the bit that an encoder knows and returns the bit that
+ * was coded; a decoder ignores the argument. *here holds the label when
+ * encoding and whatever when decoding, and the coded label afterwards.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_CODEC_MAP_PIXEL_H
+#define TSR_CODEC_MAP_PIXEL_H
+
+#include "map_model.h"
+
+/* Candidates this near to the prediction are left to the difference. */
+#define CANDIDATE_NEAR 3u
+/* A magnitude's bucket is coded in unary; from SINGLE_COUNT on a bucket has 2, 4, 8 ... values. */
+#define BUCKET_LAST 13u
+#define SINGLE_COUNT 4u
+/* Kinds of candidates: 0 W and N are one; W and N in the order of ask_nearest(), 1 N first, 2 W first, 3 N second, 4 W
+ * second; 5 all others. */
+#define KIND_BOTH 0u
+#define KIND_N_FIRST 1u
+#define KIND_W_FIRST 2u
+#define KIND_N_SECOND 3u
+#define KIND_W_SECOND 4u
+#define KIND_OTHER 5u
+
+/* The reference around a pixel, as labels. */
+struct still {
+    uint16_t here, w, e, n, nw, ne, s, se;
+};
+
+/* A row being coded. Pointers are to column x of the row and of the two above. */
+struct around {
+    uint16_t *here;
+    const uint16_t *up;
+    const uint16_t *up2;
+    const struct still *still; /* or NULL */
+    unsigned near;             /* 0 in a decoder */
+    unsigned run;              /* pixels before this one whose label was that of their own W */
+};
+
+/* What the questions beyond the first two need. */
+struct asked {
+    uint16_t label[6]; /* W, N, the reference's, NE, NW, NEE */
+    unsigned count;
+    unsigned gap; /* class of |W - N| */
+};
+
+static inline unsigned difference(unsigned a, unsigned b)
+{
+    return a > b ? a - b : b - a;
+}
+
+static inline unsigned class_of_gap(unsigned gap)
+{
+    return gap == 0 ? 0u : gap == 1 ? 1u : gap <= 3 ? 2u : gap <= 8 ? 3u : gap < TSR_MAP_DIFFERENCE_INVALID ? 4u : 5u;
+}
+
+static inline unsigned class_of_activity(unsigned sum)
+{
+    return sum == 0 ? 0u : sum <= 2 ? 1u : sum <= 5 ? 2u : sum <= 12 ? 3u : sum < TSR_MAP_DIFFERENCE_INVALID ? 4u : 5u;
+}
+
+static inline unsigned class_of_run(unsigned run)
+{
+    return run < 2 ? run : run < 4 ? 2u : run < 8 ? 3u : run < 16 ? 4u : 5u;
+}
+
+/* neighbour - candidate, saturated to -4 .. 3, in 3 bits. */
+static inline unsigned saturated(unsigned neighbour, unsigned candidate)
+{
+    const int away = (int)neighbour - (int)candidate;
+    return (unsigned)(away < -4 ? -4 : away > 3 ? 3 : away) & 7u;
+}
+
+static inline unsigned pair_index(unsigned first, unsigned second, unsigned candidate)
+{
+    return saturated(first, candidate) | saturated(second, candidate) << 3;
+}
+
+static inline bool was_asked(const struct asked *asked, unsigned label)
+{
+    for (unsigned i = 0; i < asked->count; i++) {
+        if (asked->label[i] == label) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Would an encoder take this label for the pixel's? Whether there is a match is never changed. */
+static inline bool is_near(const struct around *at, unsigned label)
+{
+    return difference(*at->here, label) <= at->near;
+}
+
+/* What changed around the pixel: W, N, NE, NW, a bit each. */
+static inline unsigned changes(const struct around *at)
+{
+    const struct still *still = at->still;
+    return (unsigned)(at->here[-1] != still->w) | (unsigned)(at->up[0] != still->n) << 1 |
+           (unsigned)(at->up[1] != still->ne) << 2 | (unsigned)(at->up[-1] != still->nw) << 3;
+}
+
+/* What the last tables look at. */
+static inline void index_reference(const struct around *at, unsigned candidate, uint8_t index[3])
+{
+    const struct still *still = at->still;
+    index[0] = (uint8_t)pair_index(still->here, still->e, candidate);
+    index[1] = (uint8_t)pair_index(still->s, still->se, candidate);
+    index[2] =
+        (uint8_t)(changes(at) | (unsigned)(still->here == candidate) << 4 | (unsigned)(still->e == still->here) << 5);
+}
+
+/* Is it this label? */
+static inline bool ask(struct tsr_map_model *model, struct side *side, const struct around *at, struct asked *asked,
+                       unsigned kind, unsigned candidate)
+{
+    const unsigned w = at->here[-1], n = at->up[0];
+    uint8_t index[TSR_MAP_TABLE_COUNT] = {
+        (uint8_t)pair_index(at->up[1], at->up[2], candidate),
+        (uint8_t)pair_index(at->up[-2], at->up[-1], candidate),
+        (uint8_t)pair_index(at->up2[0], at->up2[1], candidate),
+        (uint8_t)pair_index(at->here[-3], at->here[-2], candidate),
+        (uint8_t)pair_index(candidate == w ? n : w, at->up2[-1], candidate),
+    };
+    unsigned table_count = TSR_MAP_TABLE_COUNT_ALONE;
+    if (at->still != NULL) {
+        table_count = TSR_MAP_TABLE_COUNT;
+        index_reference(at, candidate, index + TSR_MAP_TABLE_COUNT_ALONE);
+    }
+    if (side_choice(side, model, kind, index, table_count, is_near(at, candidate))) {
+        *at->here = (uint16_t)candidate;
+        return true;
+    }
+    asked->label[asked->count++] = (uint16_t)candidate;
+    return false;
+}
+
+/* Is it W or N? The one that continues an edge first. */
+static inline bool ask_nearest(struct tsr_map_model *model, struct side *side, const struct around *at,
+                               struct asked *asked)
+{
+    const unsigned w = at->here[-1], n = at->up[0];
+    if (w == n) {
+        return ask(model, side, at, asked, KIND_BOTH, w);
+    }
+    const bool upper_first = at->up[-1] == w;
+    const unsigned first = upper_first ? n : w, second = upper_first ? w : n;
+    return ask(model, side, at, asked, upper_first ? KIND_N_FIRST : KIND_W_FIRST, first) ||
+           ask(model, side, at, asked, upper_first ? KIND_W_SECOND : KIND_N_SECOND, second);
+}
+
+/* Is it what the reference has there? */
+static inline bool ask_still(struct tsr_map_model *model, struct side *side, const struct around *at,
+                             struct asked *asked)
+{
+    return at->still != NULL && !was_asked(asked, at->still->here) &&
+           ask(model, side, at, asked, KIND_OTHER, at->still->here);
+}
+
+/* Is it NE, NW or NEE, unless the difference is as good? */
+static inline bool ask_farther(struct tsr_map_model *model, struct side *side, const struct around *at,
+                               struct asked *asked, unsigned predicted)
+{
+    const uint16_t candidates[3] = {at->up[1], at->up[-1], at->up[2]};
+    for (unsigned i = 0; i < 3; i++) {
+        if (difference(candidates[i], predicted) > CANDIDATE_NEAR && !was_asked(asked, candidates[i]) &&
+            ask(model, side, at, asked, KIND_OTHER, candidates[i])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* What the reference has, if W or N is as it was; else the median of W, N and W + N - NW (LOCO-I), or the first that
+ * is a match. */
+static inline unsigned predict(const struct tsr_map_model *model, const struct around *at)
+{
+    const unsigned invalid = model->invalid;
+    const unsigned w = at->here[-1], n = at->up[0], nw = at->up[-1], ne = at->up[1];
+    if (at->still != NULL && at->still->here != invalid && (w == at->still->w || n == at->still->n)) {
+        return at->still->here;
+    }
+    if (w != invalid && n != invalid && nw != invalid) {
+        const unsigned high = w > n ? w : n, low = w > n ? n : w;
+        return nw >= high ? low : nw <= low ? high : w + n - nw;
+    }
+    return w != invalid ? w : n != invalid ? n : ne != invalid ? ne : nw != invalid ? nw : model->last_label;
+}
+
+/* 0, 1, 2: below the prediction; as it or no match; above it. */
+static inline unsigned side_of(unsigned neighbour, unsigned predicted, unsigned invalid)
+{
+    return neighbour == invalid ? 1u : 1u + (neighbour > predicted) - (neighbour < predicted);
+}
+
+static inline unsigned bucket_of(uint32_t magnitude)
+{
+    unsigned bucket = magnitude < SINGLE_COUNT ? magnitude : SINGLE_COUNT;
+    while (bucket >= SINGLE_COUNT && bucket < BUCKET_LAST && (magnitude - 2u) >> (bucket - 2u) != 0) {
+        bucket++;
+    }
+    return bucket;
+}
+
+static inline uint32_t code_magnitude(struct tsr_map_model *model, struct side *side, unsigned context,
+                                      uint32_t magnitude)
+{
+    const unsigned target = bucket_of(magnitude);
+    unsigned bucket = 0;
+    while (bucket < SINGLE_COUNT &&
+           side_bit(side, model, TSR_MAP_NEARER_AT + 12u * bucket + context, target > bucket)) {
+        bucket++;
+    }
+    while (bucket >= SINGLE_COUNT && bucket < BUCKET_LAST &&
+           side_bit(side, model, TSR_MAP_FARTHER_AT + bucket - SINGLE_COUNT, target > bucket)) {
+        bucket++;
+    }
+    if (bucket < SINGLE_COUNT) {
+        return bucket;
+    }
+    const unsigned rest_bits = bucket - SINGLE_COUNT;
+    const uint32_t first = (2u << rest_bits) + 2u;
+    const uint32_t place = magnitude - first;
+    const uint32_t upper = side_bit(side, model, TSR_MAP_HALF_AT + rest_bits, (place >> rest_bits & 1u) != 0);
+    const uint32_t rest = rest_bits > 0 ? side_direct(side, place & ((1u << rest_bits) - 1u), rest_bits) : 0;
+    return first + (upper << rest_bits) + rest;
+}
+
+/* A label that no candidate was; false if it does not exist. */
+static inline bool code_difference(struct tsr_map_model *model, struct side *side, const struct around *at,
+                                   const struct asked *asked, unsigned predicted)
+{
+    const unsigned invalid = model->invalid;
+    const unsigned w = at->here[-1], n = at->up[0], nw = at->up[-1], ne = at->up[1];
+    if (!was_asked(asked, invalid)) {
+        const unsigned mask = (unsigned)(ne == invalid) | (unsigned)(nw == invalid) << 1 |
+                              (unsigned)(at->here[-2] == invalid) << 2 | (unsigned)(at->up2[0] == invalid) << 3;
+        if (side_bit(side, model, TSR_MAP_INVALID_AT + 6u * mask + asked->gap, *at->here == invalid)) {
+            *at->here = (uint16_t)invalid;
+            return true;
+        }
+    }
+    const unsigned activity =
+        class_of_activity(difference(w, n) + difference(n, ne) + difference(w, nw) + difference(nw, n));
+    const bool excluded = was_asked(asked, predicted);
+    if (!excluded && side_bit(side, model, TSR_MAP_PREDICTED_AT + 6u * asked->gap + activity, is_near(at, predicted))) {
+        *at->here = (uint16_t)predicted;
+        return true;
+    }
+    const unsigned sides =
+        side_of(w, predicted, invalid) + 3u * side_of(n, predicted, invalid) + 9u * side_of(ne, predicted, invalid);
+    const bool below = side_bit(side, model, TSR_MAP_SIGN_AT + sides, *at->here < predicted);
+    const uint32_t away = difference(*at->here, predicted) - 1u;
+    const uint32_t magnitude = code_magnitude(model, side, 2u * activity + excluded, away) + 1u;
+    if (below ? magnitude > predicted : predicted + magnitude >= model->label_count) {
+        return false;
+    }
+    *at->here = (uint16_t)(below ? predicted - magnitude : predicted + magnitude);
+    return true;
+}
+
+static inline bool is_flat(const struct around *at)
+{
+    const unsigned w = at->here[-1];
+    return at->up[0] == w && at->up[1] == w && at->up[-1] == w && at->here[-2] == w && at->up2[0] == w;
+}
+
+/* Is a flat neighbourhood continued? */
+static inline bool ask_flat(struct tsr_map_model *model, struct side *side, const struct around *at,
+                            struct asked *asked)
+{
+    const unsigned w = at->here[-1];
+    unsigned context = w == model->invalid;
+    if (at->still != NULL) {
+        context += 2u * (unsigned)(at->still->here == w) + 4u * (unsigned)(at->still->e == w) +
+                   8u * (unsigned)(at->still->s == w) + 16u * (unsigned)(changes(at) != 0);
+    } else {
+        context += 2u * class_of_run(at->run) + 12u * (unsigned)(at->up[2] == w) + 24u * (unsigned)(at->up2[1] == w);
+    }
+    if (side_bit(side, model, TSR_MAP_FLAT_AT + context, is_near(at, w))) {
+        *at->here = (uint16_t)w;
+        return true;
+    }
+    asked->label[asked->count++] = (uint16_t)w;
+    return false;
+}
+
+/* Code *here; false if the label does not exist. What a question needs is
+ * computed just before it: most pixels end at the first. */
+static inline bool code_label(struct tsr_map_model *model, struct side *side, const struct around *at)
+{
+    struct asked asked;
+    asked.count = 0;
+    const bool flat = is_flat(at);
+    if (flat ? ask_flat(model, side, at, &asked) : ask_nearest(model, side, at, &asked)) {
+        return true;
+    }
+    if (ask_still(model, side, at, &asked)) {
+        return true;
+    }
+    const unsigned predicted = predict(model, at);
+    if (!flat && ask_farther(model, side, at, &asked, predicted)) {
+        return true;
+    }
+    asked.gap = class_of_gap(difference(at->here[-1], at->up[0]));
+    return code_difference(model, side, at, &asked, predicted);
+}
+
+static inline struct still look_up(const struct tsr_map_model *model, unsigned x)
+{
+    const struct tsr_map_reference *reference = &model->reference;
+    const unsigned y = model->row, width = model->info.width, step = model->info.step_log2;
+    const uint16_t *row = reference->map + (size_t)y * reference->stride + x;
+    const uint16_t *above = row - reference->stride;
+    const bool left = x > 0, right = x + 1u < width, top = y > 0, bottom = y + 1u < model->info.height;
+    const uint16_t none = model->invalid;
+    return (struct still){.here = TSR_MAP_LABEL(row[0], step),
+                          .w = left ? TSR_MAP_LABEL(row[-1], step) : none,
+                          .e = right ? TSR_MAP_LABEL(row[1], step) : none,
+                          .n = top ? TSR_MAP_LABEL(above[0], step) : none,
+                          .nw = top && left ? TSR_MAP_LABEL(above[-1], step) : none,
+                          .ne = top && right ? TSR_MAP_LABEL(above[1], step) : none,
+                          .s = bottom ? TSR_MAP_LABEL(row[reference->stride], step) : none,
+                          .se = bottom && right ? TSR_MAP_LABEL(row[reference->stride + 1u], step) : none};
+}
+
+static inline bool code_literal(const struct tsr_map_model *model, struct side *side, uint16_t *here)
+{
+    const uint32_t none = model->label_count;
+    const uint32_t label = side_direct(side, *here == model->invalid ? none : *here, model->label_bits);
+    *here = (uint16_t)(label == none ? model->invalid : label);
+    return label <= none;
+}
+
+/* Columns first .. end - 1 of the row; false if a label does not exist. */
+static inline bool code_span(struct tsr_map_model *model, struct side *side, unsigned near, unsigned first,
+                             unsigned end)
+{
+    struct around at = {.here = tsr_map_row_labels(model, 0) + first,
+                        .up = tsr_map_row_labels(model, 1) + first,
+                        .up2 = tsr_map_row_labels(model, 2) + first,
+                        .near = near};
+    bool literal = false;
+    for (unsigned x = first; x < end; x++, at.here++, at.up++, at.up2++) {
+        if (x % TSR_MAP_LITERAL_PIXELS == 0) {
+            const unsigned left = end - x < TSR_MAP_LITERAL_PIXELS ? end - x : TSR_MAP_LITERAL_PIXELS;
+            literal = side_spent_bits(side) > model->allowed_bits;
+            model->allowed_bits += left * model->label_bits;
+        }
+        bool exists;
+        if (literal) {
+            exists = code_literal(model, side, at.here);
+        } else if (model->reference.map != NULL) {
+            const struct still still = look_up(model, x);
+            at.still = &still;
+            exists = code_label(model, side, &at);
+        } else {
+            exists = code_label(model, side, &at);
+        }
+        if (!exists) {
+            return false;
+        }
+        const unsigned label = *at.here;
+        at.run = label == at.here[-1] ? at.run + 1u : 0;
+        if (label != model->invalid) {
+            model->last_label = (uint16_t)label;
+        }
+    }
+    return true;
+}
+
+#endif

@@ -1,0 +1,172 @@
+/*
+ * Logistic regression over the candidates' tables, and counts for every context.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include "tsr/coding/map_prior_trainer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace tsr
+{
+namespace
+{
+
+constexpr int kEpochs = 6;
+constexpr double kRate = 0.1;
+constexpr double kFirstSquare = 1e-3;       /* keeps AdaGrad's first steps short */
+constexpr std::size_t kStride = 7919;       /* prime: questions are met in an order that mixes the maps */
+constexpr double kPseudoCount = 2;          /* a context seen n times counts its start as so many more */
+constexpr int kProbabilityMin = 64;         /* Q16: where adaptation would stop anyway */
+constexpr int kProbabilityMax = 65536 - 64; /* Q16 */
+constexpr double kLevelStep = 0.5;          /* log-odds of a level */
+constexpr int kLevelZero = TSR_MAP_LEVEL_COUNT / 2;
+
+template <typename Value>
+using Tables = std::array<std::array<std::array<Value, TSR_MAP_TABLE_LEN>, TSR_MAP_TABLE_COUNT>, TSR_MAP_KIND_COUNT>;
+
+double logistic(double log_odds)
+{
+    return 1 / (1 + std::exp(-log_odds));
+}
+
+struct Regression {
+    Tables<double> weight{};
+    Tables<double> square{};
+
+    void learn(const tsr_map_question &question)
+    {
+        auto &weights = weight[question.kind];
+        auto &squares = square[question.kind];
+        double log_odds = 0;
+        for (std::size_t table = 0; table < question.table_count; table++) {
+            log_odds += weights[table][question.index[table]];
+        }
+        const double gradient = logistic(log_odds) - (question.bit ? 1 : 0);
+        for (std::size_t table = 0; table < question.table_count; table++) {
+            double &sum = squares[table][question.index[table]];
+            sum += gradient * gradient;
+            weights[table][question.index[table]] -= kRate * gradient / std::sqrt(kFirstSquare + sum);
+        }
+    }
+};
+
+std::int8_t rounded_weight(double weight)
+{
+    return static_cast<std::int8_t>(std::clamp(std::lround(weight * TSR_MAP_WEIGHT_SCALE), -127L, 127L));
+}
+
+/* Probability of a 1 before anything was counted: the middle of a candidate's level, else a half. */
+double start_of(std::size_t cell)
+{
+    const std::size_t end = TSR_MAP_CANDIDATE_AT + std::size_t{TSR_MAP_KIND_COUNT} * TSR_MAP_LEVEL_COUNT;
+    if (cell < TSR_MAP_CANDIDATE_AT || cell >= end) {
+        return 0.5;
+    }
+    const int level = static_cast<int>((cell - TSR_MAP_CANDIDATE_AT) % TSR_MAP_LEVEL_COUNT);
+    return logistic((level - kLevelZero) * kLevelStep);
+}
+
+void keep(void *user, const tsr_map_question *question)
+{
+    static_cast<std::vector<tsr_map_question> *>(user)->push_back(*question);
+}
+
+} // namespace
+
+void MapPriorTrainer::add(const tsr_map_info &info, std::span<const std::uint16_t> map,
+                          std::span<const std::uint16_t> reference)
+{
+    const auto model = std::make_unique<tsr_map_model>();
+    std::vector<std::uint16_t> scratch(TSR_MAP_SCRATCH_COUNT(info.width));
+    const tsr_map_reference against{reference.data(), info.width, 0};
+    const std::size_t pixels = std::size_t{info.width} * info.height;
+    if (map.size() != pixels || (!reference.empty() && reference.size() != pixels) ||
+        tsr_map_trace(model.get(), &info, reference.empty() ? nullptr : &against, map.data(), scratch.data(),
+                      scratch.size(), keep, &questions_) != TSR_OK) {
+        throw std::invalid_argument("a map that its info does not admit");
+    }
+}
+
+MapPrior MapPriorTrainer::train() const
+{
+    auto regression = std::make_unique<Regression>();
+    for (int epoch = 0; epoch < kEpochs; epoch++) {
+        for (std::size_t i = 0, at = 0; i < questions_.size(); i++, at = (at + kStride) % questions_.size()) {
+            if (questions_[at].is_candidate && questions_[at].coding != TSR_MAP_CODING_NEAR) {
+                regression->learn(questions_[at]);
+            }
+        }
+    }
+    MapPrior prior;
+    for (std::size_t kind = 0; kind < TSR_MAP_KIND_COUNT; kind++) {
+        for (std::size_t table = 0; table < TSR_MAP_TABLE_COUNT; table++) {
+            std::ranges::transform(regression->weight[kind][table], prior.weights[kind][table].begin(), rounded_weight);
+        }
+    }
+    std::vector<std::array<double, 2>> counts(TSR_MAP_CODING_COUNT * TSR_MAP_CELL_COUNT);
+    for (const tsr_map_question &question : questions_) {
+        std::size_t cell = question.cell;
+        if (question.is_candidate) {
+            const auto *weights =
+                reinterpret_cast<const std::int8_t(*)[TSR_MAP_TABLE_LEN]>(prior.weights[question.kind].data());
+            cell = TSR_MAP_CANDIDATE_AT + std::size_t{question.kind} * TSR_MAP_LEVEL_COUNT +
+                   tsr_map_candidate_level(weights, question.index, question.table_count);
+        }
+        counts[question.coding * TSR_MAP_CELL_COUNT + cell][question.bit ? 1 : 0]++;
+    }
+    for (std::size_t i = 0; i < counts.size(); i++) {
+        const std::size_t cell = i % TSR_MAP_CELL_COUNT;
+        const auto [zeros, ones] = counts[i];
+        const double p = (ones + kPseudoCount * start_of(cell)) / (zeros + ones + kPseudoCount);
+        prior.cells[i / TSR_MAP_CELL_COUNT][cell] =
+            static_cast<std::uint16_t>(std::clamp<long>(std::lround(p * 65536), kProbabilityMin, kProbabilityMax));
+    }
+    return prior;
+}
+
+std::string map_prior_source(const MapPrior &prior, unsigned id, std::uint16_t matcher_crc)
+{
+    std::string text =
+        fmt::format("/*\n * What the map codec knows before it has seen a map. Made by tarsier train-prior: "
+                    "train again, do not edit.\n *\n * SPDX-License-Identifier: Apache-2.0\n */\n"
+                    "#include \"map_model.h\"\n\n/* clang-format off */\n"
+                    "const struct tsr_map_prior tsr_map_prior = {{\n    .id = {},\n"
+                    "    .matcher_crc = 0x{:04x},\n    .weights = {{\n",
+                    id, matcher_crc);
+    const auto append_numbers = [&text](const auto &numbers, const char *indent) {
+        std::string line = indent;
+        for (const auto number : numbers) {
+            const std::string word = fmt::format("{},", number);
+            if (line.size() + word.size() > 118) {
+                text += line + "\n";
+                line = indent;
+            }
+            line += word;
+        }
+        text += line + "\n";
+    };
+    for (const MapPrior::Weights &kind : prior.weights) {
+        text += "        {\n";
+        for (const auto &table : kind) {
+            text += "            {\n";
+            append_numbers(table, "                ");
+            text += "            },\n";
+        }
+        text += "        },\n";
+    }
+    text += "    },\n    .cells = {\n";
+    for (const auto &cells : prior.cells) {
+        text += "        {\n";
+        append_numbers(cells, "            ");
+        text += "        },\n";
+    }
+    return text + "    },\n};\n";
+}
+
+} // namespace tsr
