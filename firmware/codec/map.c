@@ -57,6 +57,7 @@ enum tsr_status tsr_map_encode_start(struct tsr_map_encoder *encoder, const stru
         tsr_write_u16(&writer, reference->id);
     }
     encoder->header_len = (uint8_t)header_len;
+    encoder->status = TSR_OK;
     tsr_range_encode_start(&encoder->range, out + header_len, out_cap - header_len);
     return TSR_OK;
 }
@@ -84,20 +85,20 @@ enum tsr_status tsr_map_encode_rows(struct tsr_map_encoder *encoder, const uint1
     if (encoder == NULL || rows == NULL) {
         return TSR_ERR_ARG;
     }
+    if (encoder->status != TSR_OK) {
+        return encoder->status;
+    }
     if (encoder->range.at > encoder->range.cap) {
         return TSR_ERR_NOBUF;
     }
     if (!fits(&encoder->model, stride, row_count)) {
         return TSR_ERR_SIZE;
     }
-    const struct tsr_map_info *info = &encoder->model.info;
-    for (uint16_t y = 0; y < row_count; y++) {
-        if (!tsr_map_is_valid_row(info, rows + y * stride)) {
-            return TSR_ERR_ARG;
-        }
-    }
     for (uint16_t y = 0; y < row_count && encoder->range.at <= encoder->range.cap; y++) {
-        tsr_map_take_row(&encoder->model, rows + y * stride);
+        if (!tsr_map_take_row(&encoder->model, rows + y * stride)) {
+            encoder->status = TSR_ERR_ARG;
+            return encoder->status;
+        }
         tsr_map_encode_row(&encoder->model, &encoder->range);
     }
     return encoder->range.at > encoder->range.cap ? TSR_ERR_NOBUF : progress(&encoder->model);
@@ -107,6 +108,9 @@ enum tsr_status tsr_map_encode_finish(struct tsr_map_encoder *encoder, size_t *l
 {
     if (encoder == NULL || len == NULL) {
         return TSR_ERR_ARG;
+    }
+    if (encoder->status != TSR_OK) {
+        return encoder->status;
     }
     if (encoder->range.at > encoder->range.cap) {
         return TSR_ERR_NOBUF;

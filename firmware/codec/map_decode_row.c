@@ -16,6 +16,11 @@ static inline bool side_bit(struct side *side, struct tsr_map_model *model, unsi
     return tsr_fixed_decode(&side->range, &model->cells[cell]);
 }
 
+static TSR_OUT_OF_LINE bool side_rare_bit(struct side *side, struct tsr_map_model *model, unsigned cell, bool bit)
+{
+    return side_bit(side, model, cell, bit);
+}
+
 static inline bool side_choice(struct side *side, struct tsr_map_model *model, unsigned kind, const uint8_t *index,
                                unsigned table_count, bool bit)
 {

@@ -48,22 +48,36 @@ enum tsr_status tsr_map_model_start(struct tsr_map_model *model, const struct ts
     return TSR_OK;
 }
 
-bool tsr_map_is_valid_row(const struct tsr_map_info *info, const uint16_t *row)
+static bool is_valid_value(const struct tsr_map_info *info, unsigned value)
 {
-    const unsigned end = info->disparities * TSR_DISPARITY_ONE_Q4;
     const unsigned below_step = (1u << info->step_log2) - 1u;
-    for (unsigned x = 0; x < info->width; x++) {
-        if (row[x] != TSR_DISPARITY_INVALID && (row[x] >= end || (row[x] & below_step) != 0)) {
-            return false;
-        }
-    }
-    return true;
+    return value == TSR_DISPARITY_INVALID ||
+           (value < info->disparities * TSR_DISPARITY_ONE_Q4 && (value & below_step) == 0);
 }
 
-void tsr_map_take_row(struct tsr_map_model *model, const uint16_t *row)
+/* Two values at once. One that is too large keeps its upper bit in (value | 0x8000) - end. */
+bool tsr_map_take_row(struct tsr_map_model *model, const uint16_t *row)
 {
+    const struct tsr_map_info *info = &model->info;
+    const unsigned width = info->width, step_log2 = info->step_log2;
+    const uint32_t end_twice = info->disparities * TSR_DISPARITY_ONE_Q4 * 0x10001u;
+    const uint32_t below_step_twice = ((1u << step_log2) - 1u) * 0x10001u;
+    const uint32_t labels_twice = model->invalid * 0x10001u;
     uint16_t *labels = tsr_map_row_labels(model, 0);
-    for (unsigned x = 0; x < model->info.width; x++) {
-        labels[x] = TSR_MAP_LABEL(row[x], model->info.step_log2);
+    unsigned x = 0;
+    for (; x + 2u <= width; x += 2) {
+        const uint32_t pair = row[x] | (uint32_t)row[x + 1u] << 16;
+        const uint32_t too_large = (((pair | 0x80008000u) - end_twice) | pair) & 0x80008000u;
+        if (((pair & below_step_twice) | too_large) != 0 && pair != UINT32_MAX &&
+            !(is_valid_value(info, row[x]) && is_valid_value(info, row[x + 1u]))) {
+            return false;
+        }
+        const uint32_t both = pair >> step_log2 & labels_twice;
+        labels[x] = (uint16_t)both;
+        labels[x + 1u] = (uint16_t)(both >> 16);
     }
+    if (x < width) {
+        labels[x] = TSR_MAP_LABEL(row[x], step_log2);
+    }
+    return x == width || is_valid_value(info, row[x]);
 }

@@ -23,6 +23,9 @@ _Static_assert(TSR_MAP_SCRATCH_COUNT(0) == TSR_MAP_ROW_COUNT * (TSR_MAP_PAD_LEFT
 #define TSR_MAP_LABEL(value, step_log2) ((uint16_t)((unsigned)(value) >> (step_log2)&0x7fffu))
 #define TSR_MAP_DIFFERENCE_INVALID 2048u
 
+/* Calls that few pixels make, kept out of the code that most run through. */
+#define TSR_OUT_OF_LINE __attribute__((noinline))
+
 /* Pixels that are coded alike, as labels or literally. */
 #define TSR_MAP_LITERAL_PIXELS 16u
 /* A map that has cost this much more than its literal size is stored literally until it is cheap again. */
@@ -82,11 +85,9 @@ enum tsr_status tsr_map_model_start(struct tsr_map_model *model, const struct ts
 
 bool tsr_map_is_valid_info(const struct tsr_map_info *info);
 
-/* Is every disparity invalid, or a multiple of the step below 16 * disparities? */
-bool tsr_map_is_valid_row(const struct tsr_map_info *info, const uint16_t *row);
-
-/* Put a row of disparities, as labels, into row model->row of the scratch. */
-void tsr_map_take_row(struct tsr_map_model *model, const uint16_t *row);
+/* Put a row of disparities, as labels, into row model->row of the scratch; false if one is neither invalid nor a
+ * multiple of the step below 16 * disparities. */
+bool tsr_map_take_row(struct tsr_map_model *model, const uint16_t *row);
 
 /* Code row model->row, whose labels stand in the scratch, and step to the next. With near > 0 the labels become those
  * that a decoder will find. */

@@ -4,7 +4,8 @@
  * The file that includes this has defined its side of the questions:
  *
  *   struct side               what answers them
- *   side_bit(side, model, cell, bit)                one adaptive bit
+ *   side_bit(side, model, cell, bit)                one adaptive bit, inline: of the questions that most pixels end at
+ *   side_rare_bit(side, model, cell, bit)           the same, out of line
  *   side_choice(side, model, kind, index, table_count, bit)
  *                             the same, its cell chosen by the trained tables
  *   side_direct(side, value, bit_count)             equally likely bits
@@ -21,11 +22,17 @@
 
 #include "map_model.h"
 
+/* The parallel arithmetic of Cortex-M4, M7, M33 (ARMv7-M ARM, A4.4.3), in Thumb state. */
+#if defined(__ARM_FEATURE_SIMD32) && defined(__thumb2__)
+#define TSR_MAP_HAS_DSP
+#endif
+
 /* Candidates this near to the prediction are left to the difference. */
 #define CANDIDATE_NEAR 3u
 /* A magnitude's bucket is coded in unary; from SINGLE_COUNT on a bucket has 2, 4, 8 ... values. */
 #define BUCKET_LAST 13u
 #define SINGLE_COUNT 4u
+#define RUN_MAX 16u /* longer runs are alike */
 /* Kinds of candidates: 0 W and N are one; W and N in the order of ask_nearest(), 1 N first, 2 W first, 3 N second, 4 W
  * second; 5 all others. */
 #define KIND_BOTH 0u
@@ -72,21 +79,30 @@ static inline unsigned class_of_activity(unsigned sum)
     return sum == 0 ? 0u : sum <= 2 ? 1u : sum <= 5 ? 2u : sum <= 12 ? 3u : sum < TSR_MAP_DIFFERENCE_INVALID ? 4u : 5u;
 }
 
-static inline unsigned class_of_run(unsigned run)
+/* Two labels side by side, the first in the lower half. */
+static inline uint32_t pair_of(const uint16_t *labels)
 {
-    return run < 2 ? run : run < 4 ? 2u : run < 8 ? 3u : run < 16 ? 4u : 5u;
+    return labels[0] | (uint32_t)labels[1] << 16;
 }
 
-/* neighbour - candidate, saturated to -4 .. 3, in 3 bits. */
-static inline unsigned saturated(unsigned neighbour, unsigned candidate)
+/* Both less the candidate, saturated to -4 .. 3, in 3 bits each. */
+static inline unsigned pair_index(uint32_t pair, uint32_t candidate)
 {
-    const int away = (int)neighbour - (int)candidate;
-    return (unsigned)(away < -4 ? -4 : away > 3 ? 3 : away) & 7u;
-}
-
-static inline unsigned pair_index(unsigned first, unsigned second, unsigned candidate)
-{
-    return saturated(first, candidate) | saturated(second, candidate) << 3;
+#if defined(TSR_MAP_HAS_DSP)
+    uint32_t away;
+    __asm__("ssub16 %0, %1, %2\n\tssat16 %0, #3, %0" : "=r"(away) : "r"(pair), "r"(candidate * 0x10001u) : "cc");
+    return (away & 7u) | (away >> 16 & 7u) << 3;
+#else
+    const int first = (int)(pair & 0xffffu) - (int)candidate, second = (int)(pair >> 16) - (int)candidate;
+    return ((unsigned)(first < -4  ? -4
+                       : first > 3 ? 3
+                                   : first) &
+            7u) |
+           ((unsigned)(second < -4  ? -4
+                       : second > 3 ? 3
+                                    : second) &
+            7u) << 3;
+#endif
 }
 
 static inline bool was_asked(const struct asked *asked, unsigned label)
@@ -117,30 +133,32 @@ static inline unsigned changes(const struct around *at)
 static inline void index_reference(const struct around *at, unsigned candidate, uint8_t index[3])
 {
     const struct still *still = at->still;
-    index[0] = (uint8_t)pair_index(still->here, still->e, candidate);
-    index[1] = (uint8_t)pair_index(still->s, still->se, candidate);
+    index[0] = (uint8_t)pair_index(still->here | (uint32_t)still->e << 16, candidate);
+    index[1] = (uint8_t)pair_index(still->s | (uint32_t)still->se << 16, candidate);
     index[2] =
         (uint8_t)(changes(at) | (unsigned)(still->here == candidate) << 4 | (unsigned)(still->e == still->here) << 5);
 }
 
 /* Is it this label? */
-static inline bool ask(struct tsr_map_model *model, struct side *side, const struct around *at, struct asked *asked,
-                       unsigned kind, unsigned candidate)
+static TSR_OUT_OF_LINE bool ask(struct tsr_map_model *model, struct side *side, const struct around *at,
+                                struct asked *asked, unsigned kind, unsigned candidate)
 {
     const unsigned w = at->here[-1], n = at->up[0];
     uint8_t index[TSR_MAP_TABLE_COUNT] = {
-        (uint8_t)pair_index(at->up[1], at->up[2], candidate),
-        (uint8_t)pair_index(at->up[-2], at->up[-1], candidate),
-        (uint8_t)pair_index(at->up2[0], at->up2[1], candidate),
-        (uint8_t)pair_index(at->here[-3], at->here[-2], candidate),
-        (uint8_t)pair_index(candidate == w ? n : w, at->up2[-1], candidate),
+        (uint8_t)pair_index(pair_of(at->up + 1), candidate),
+        (uint8_t)pair_index(pair_of(at->up - 2), candidate),
+        (uint8_t)pair_index(pair_of(at->up2), candidate),
+        (uint8_t)pair_index(pair_of(at->here - 3), candidate),
+        (uint8_t)pair_index((candidate == w ? n : w) | (uint32_t)at->up2[-1] << 16, candidate),
     };
-    unsigned table_count = TSR_MAP_TABLE_COUNT_ALONE;
-    if (at->still != NULL) {
-        table_count = TSR_MAP_TABLE_COUNT;
+    bool is_it = is_near(at, candidate);
+    if (at->still == NULL) {
+        is_it = side_choice(side, model, kind, index, TSR_MAP_TABLE_COUNT_ALONE, is_it);
+    } else {
         index_reference(at, candidate, index + TSR_MAP_TABLE_COUNT_ALONE);
+        is_it = side_choice(side, model, kind, index, TSR_MAP_TABLE_COUNT, is_it);
     }
-    if (side_choice(side, model, kind, index, table_count, is_near(at, candidate))) {
+    if (is_it) {
         *at->here = (uint16_t)candidate;
         return true;
     }
@@ -221,11 +239,11 @@ static inline uint32_t code_magnitude(struct tsr_map_model *model, struct side *
     const unsigned target = bucket_of(magnitude);
     unsigned bucket = 0;
     while (bucket < SINGLE_COUNT &&
-           side_bit(side, model, TSR_MAP_NEARER_AT + 12u * bucket + context, target > bucket)) {
+           side_rare_bit(side, model, TSR_MAP_NEARER_AT + 12u * bucket + context, target > bucket)) {
         bucket++;
     }
     while (bucket >= SINGLE_COUNT && bucket < BUCKET_LAST &&
-           side_bit(side, model, TSR_MAP_FARTHER_AT + bucket - SINGLE_COUNT, target > bucket)) {
+           side_rare_bit(side, model, TSR_MAP_FARTHER_AT + bucket - SINGLE_COUNT, target > bucket)) {
         bucket++;
     }
     if (bucket < SINGLE_COUNT) {
@@ -234,7 +252,7 @@ static inline uint32_t code_magnitude(struct tsr_map_model *model, struct side *
     const unsigned rest_bits = bucket - SINGLE_COUNT;
     const uint32_t first = (2u << rest_bits) + 2u;
     const uint32_t place = magnitude - first;
-    const uint32_t upper = side_bit(side, model, TSR_MAP_HALF_AT + rest_bits, (place >> rest_bits & 1u) != 0);
+    const uint32_t upper = side_rare_bit(side, model, TSR_MAP_HALF_AT + rest_bits, (place >> rest_bits & 1u) != 0);
     const uint32_t rest = rest_bits > 0 ? side_direct(side, place & ((1u << rest_bits) - 1u), rest_bits) : 0;
     return first + (upper << rest_bits) + rest;
 }
@@ -248,7 +266,7 @@ static inline bool code_difference(struct tsr_map_model *model, struct side *sid
     if (!was_asked(asked, invalid)) {
         const unsigned mask = (unsigned)(ne == invalid) | (unsigned)(nw == invalid) << 1 |
                               (unsigned)(at->here[-2] == invalid) << 2 | (unsigned)(at->up2[0] == invalid) << 3;
-        if (side_bit(side, model, TSR_MAP_INVALID_AT + 6u * mask + asked->gap, *at->here == invalid)) {
+        if (side_rare_bit(side, model, TSR_MAP_INVALID_AT + 6u * mask + asked->gap, *at->here == invalid)) {
             *at->here = (uint16_t)invalid;
             return true;
         }
@@ -256,13 +274,14 @@ static inline bool code_difference(struct tsr_map_model *model, struct side *sid
     const unsigned activity =
         class_of_activity(difference(w, n) + difference(n, ne) + difference(w, nw) + difference(nw, n));
     const bool excluded = was_asked(asked, predicted);
-    if (!excluded && side_bit(side, model, TSR_MAP_PREDICTED_AT + 6u * asked->gap + activity, is_near(at, predicted))) {
+    if (!excluded &&
+        side_rare_bit(side, model, TSR_MAP_PREDICTED_AT + 6u * asked->gap + activity, is_near(at, predicted))) {
         *at->here = (uint16_t)predicted;
         return true;
     }
     const unsigned sides =
         side_of(w, predicted, invalid) + 3u * side_of(n, predicted, invalid) + 9u * side_of(ne, predicted, invalid);
-    const bool below = side_bit(side, model, TSR_MAP_SIGN_AT + sides, *at->here < predicted);
+    const bool below = side_rare_bit(side, model, TSR_MAP_SIGN_AT + sides, *at->here < predicted);
     const uint32_t away = difference(*at->here, predicted) - 1u;
     const uint32_t magnitude = code_magnitude(model, side, 2u * activity + excluded, away) + 1u;
     if (below ? magnitude > predicted : predicted + magnitude >= model->label_count) {
@@ -272,40 +291,36 @@ static inline bool code_difference(struct tsr_map_model *model, struct side *sid
     return true;
 }
 
-static inline bool is_flat(const struct around *at)
+/* N, NE, NW, WW and NN all as W. After a pixel of a flat neighbourhood that was continued only NE and NN are new. */
+static inline bool is_flat(const struct around *at, bool continued)
 {
     const unsigned w = at->here[-1];
-    return at->up[0] == w && at->up[1] == w && at->up[-1] == w && at->here[-2] == w && at->up2[0] == w;
+    return (continued || (at->up[0] == w && at->up[-1] == w && at->here[-2] == w)) && at->up[1] == w && at->up2[0] == w;
 }
 
-/* Is a flat neighbourhood continued? */
-static inline bool ask_flat(struct tsr_map_model *model, struct side *side, const struct around *at,
-                            struct asked *asked)
+static const uint8_t twice_run_classes[RUN_MAX + 1u] = {0, 2, 4, 4, 6, 6, 6, 6, 8, 8, 8, 8, 8, 8, 8, 8, 10};
+
+static inline unsigned flat_context(const struct tsr_map_model *model, const struct around *at)
 {
     const unsigned w = at->here[-1];
-    unsigned context = w == model->invalid;
+    const unsigned context = w == model->invalid;
     if (at->still != NULL) {
-        context += 2u * (unsigned)(at->still->here == w) + 4u * (unsigned)(at->still->e == w) +
-                   8u * (unsigned)(at->still->s == w) + 16u * (unsigned)(changes(at) != 0);
-    } else {
-        context += 2u * class_of_run(at->run) + 12u * (unsigned)(at->up[2] == w) + 24u * (unsigned)(at->up2[1] == w);
+        return context + 2u * (unsigned)(at->still->here == w) + 4u * (unsigned)(at->still->e == w) +
+               8u * (unsigned)(at->still->s == w) + 16u * (unsigned)(changes(at) != 0);
     }
-    if (side_bit(side, model, TSR_MAP_FLAT_AT + context, is_near(at, w))) {
-        *at->here = (uint16_t)w;
-        return true;
-    }
-    asked->label[asked->count++] = (uint16_t)w;
-    return false;
+    return context + twice_run_classes[at->run] + 12u * (unsigned)(at->up[2] == w) + 24u * (unsigned)(at->up2[1] == w);
 }
 
-/* Code *here; false if the label does not exist. What a question needs is
- * computed just before it: most pixels end at the first. */
-static inline bool code_label(struct tsr_map_model *model, struct side *side, const struct around *at)
+/* What a flat neighbourhood did not continue, or one that is none; false if the label does not exist. What a question
+ * needs is computed just before it. */
+static TSR_OUT_OF_LINE bool code_label(struct tsr_map_model *model, struct side *side, const struct around *at,
+                                       bool flat)
 {
     struct asked asked;
     asked.count = 0;
-    const bool flat = is_flat(at);
-    if (flat ? ask_flat(model, side, at, &asked) : ask_nearest(model, side, at, &asked)) {
+    if (flat) {
+        asked.label[asked.count++] = at->here[-1];
+    } else if (ask_nearest(model, side, at, &asked)) {
         return true;
     }
     if (ask_still(model, side, at, &asked)) {
@@ -345,6 +360,89 @@ static inline bool code_literal(const struct tsr_map_model *model, struct side *
     return label <= none;
 }
 
+/* Continue a flat neighbourhood, of a map alone, while the rows above are flat right of it too: up to count pixels.
+ * Returns how many were continued; *missed tells whether the next one was asked and is not. This is where most pixels
+ * end, so it is a loop of its own. */
+static TSR_OUT_OF_LINE unsigned continue_flat(struct tsr_map_model *model, struct side *side, struct around *at,
+                                              unsigned count, bool *missed)
+{
+    uint16_t *const here = at->here;
+    const uint16_t *const up = at->up + 1, *const up2 = at->up2;
+    const unsigned w = here[-1], near = at->near;
+    const uint32_t both = w * 0x10001u;
+    const unsigned context = TSR_MAP_FLAT_AT + 36u + (w == model->invalid);
+    struct side local = *side; /* in registers */
+    unsigned run = at->run, done = 0;
+    for (; done < count && pair_of(up + done) == both && pair_of(up2 + done) == both; done++) {
+        if (!side_bit(&local, model, context + twice_run_classes[run], difference(here[done], w) <= near)) {
+            *missed = true;
+            break;
+        }
+        here[done] = (uint16_t)w;
+        run += run < RUN_MAX;
+    }
+    *side = local;
+    at->run = run;
+    at->here += done;
+    at->up += done;
+    at->up2 += done;
+    return done;
+}
+
+/* The pixel at x as labels are coded; *continued for the next one. */
+static inline bool code_pixel(struct tsr_map_model *model, struct side *side, struct around *at, unsigned x,
+                              bool *continued)
+{
+    const unsigned w = at->here[-1];
+    struct still still;
+    if (model->reference.map != NULL) {
+        still = look_up(model, x);
+        at->still = &still;
+    }
+    const bool flat = is_flat(at, *continued);
+    *continued = flat && side_bit(side, model, TSR_MAP_FLAT_AT + flat_context(model, at), is_near(at, w));
+    if (*continued) {
+        *at->here = (uint16_t)w;
+        return true;
+    }
+    return code_label(model, side, at, flat);
+}
+
+/* What follows from a pixel for the next one. */
+static inline void step_on(struct tsr_map_model *model, struct around *at)
+{
+    const unsigned label = *at->here;
+    at->run = label != at->here[-1] ? 0 : at->run < RUN_MAX ? at->run + 1u : RUN_MAX;
+    if (label != model->invalid) {
+        model->last_label = (uint16_t)label;
+    }
+    at->here++;
+    at->up++;
+    at->up2++;
+}
+
+/* Columns x .. end - 1, all coded as labels. */
+static inline bool code_labels(struct tsr_map_model *model, struct side *side, struct around *at, unsigned x,
+                               unsigned end, bool *continued)
+{
+    while (x < end) {
+        bool missed = false;
+        if (*continued && model->reference.map == NULL) {
+            x += continue_flat(model, side, at, end - x, &missed);
+            if (x == end) {
+                return true;
+            }
+        }
+        *continued = missed ? false : *continued;
+        if (missed ? !code_label(model, side, at, true) : !code_pixel(model, side, at, x, continued)) {
+            return false;
+        }
+        step_on(model, at);
+        x++;
+    }
+    return true;
+}
+
 /* Columns first .. end - 1 of the row; false if a label does not exist. */
 static inline bool code_span(struct tsr_map_model *model, struct side *side, unsigned near, unsigned first,
                              unsigned end)
@@ -353,31 +451,26 @@ static inline bool code_span(struct tsr_map_model *model, struct side *side, uns
                         .up = tsr_map_row_labels(model, 1) + first,
                         .up2 = tsr_map_row_labels(model, 2) + first,
                         .near = near};
-    bool literal = false;
-    for (unsigned x = first; x < end; x++, at.here++, at.up++, at.up2++) {
-        if (x % TSR_MAP_LITERAL_PIXELS == 0) {
-            const unsigned left = end - x < TSR_MAP_LITERAL_PIXELS ? end - x : TSR_MAP_LITERAL_PIXELS;
-            literal = side_spent_bits(side) > model->allowed_bits;
-            model->allowed_bits += left * model->label_bits;
+    bool continued = false;
+    for (unsigned x = first; x < end;) {
+        const unsigned left = TSR_MAP_LITERAL_PIXELS - x % TSR_MAP_LITERAL_PIXELS;
+        const unsigned stop = left < end - x ? x + left : end;
+        const bool literal = side_spent_bits(side) > model->allowed_bits;
+        model->allowed_bits += (stop - x) * model->label_bits;
+        if (!literal) {
+            if (!code_labels(model, side, &at, x, stop, &continued)) {
+                return false;
+            }
+            x = stop;
+            continue;
         }
-        bool exists;
-        if (literal) {
-            exists = code_literal(model, side, at.here);
-        } else if (model->reference.map != NULL) {
-            const struct still still = look_up(model, x);
-            at.still = &still;
-            exists = code_label(model, side, &at);
-        } else {
-            exists = code_label(model, side, &at);
+        for (; x < stop; x++) {
+            if (!code_literal(model, side, at.here)) {
+                return false;
+            }
+            step_on(model, &at);
         }
-        if (!exists) {
-            return false;
-        }
-        const unsigned label = *at.here;
-        at.run = label == at.here[-1] ? at.run + 1u : 0;
-        if (label != model->invalid) {
-            model->last_label = (uint16_t)label;
-        }
+        continued = false;
     }
     return true;
 }

@@ -21,6 +21,11 @@ static inline bool side_bit(struct side *side, struct tsr_map_model *model, unsi
     return bit;
 }
 
+static TSR_OUT_OF_LINE bool side_rare_bit(struct side *side, struct tsr_map_model *model, unsigned cell, bool bit)
+{
+    return side_bit(side, model, cell, bit);
+}
+
 static inline bool side_choice(struct side *side, struct tsr_map_model *model, unsigned kind, const uint8_t *index,
                                unsigned table_count, bool bit)
 {
@@ -69,10 +74,9 @@ enum tsr_status tsr_map_trace(struct tsr_map_model *model, const struct tsr_map_
     struct side side = {tell, user};
     while (model->row < info->height) {
         const uint16_t *row = map + (size_t)model->row * info->width;
-        if (!tsr_map_is_valid_row(info, row)) {
+        if (!tsr_map_take_row(model, row)) {
             return TSR_ERR_ARG;
         }
-        tsr_map_take_row(model, row);
         (void)code_span(model, &side, info->near, 0, info->width);
         model->row++;
     }

@@ -136,16 +136,9 @@ static void test_refused_rows_change_nothing(void)
     static uint8_t expected[OUT_CAP];
     const size_t expected_len = encode();
     memcpy(expected, out, expected_len);
-    const uint16_t bad_values[] = {1, 2, 3, 511, 512, 0xfffe, 0xfffc};
     size_t len = 0;
     TEST_ASSERT_EQUAL(TSR_OK, start(OUT_CAP));
     TEST_ASSERT_EQUAL(TSR_AGAIN, tsr_map_encode_rows(&encoder, map, WIDTH, 5));
-    for (unsigned i = 0; i < sizeof bad_values / sizeof *bad_values; i++) {
-        const uint16_t kept = map[7 * WIDTH - 1];
-        map[7 * WIDTH - 1] = bad_values[i];
-        TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_rows(&encoder, map + 5 * WIDTH, WIDTH, 2));
-        map[7 * WIDTH - 1] = kept;
-    }
     TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_rows(NULL, map, WIDTH, 1));
     TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_rows(&encoder, NULL, WIDTH, 1));
     TEST_ASSERT_EQUAL(TSR_ERR_SIZE, tsr_map_encode_rows(&encoder, map, WIDTH - 1, 1));
@@ -158,6 +151,29 @@ static void test_refused_rows_change_nothing(void)
     TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_finish(&encoder, &len));
     TEST_ASSERT_EQUAL(expected_len, len);
     TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, out, len);
+}
+
+/* In every column, beside valid and invalid ones, and in a row of odd width. */
+static void test_bad_value_loses_the_map(void)
+{
+    const uint16_t bad_values[] = {1, 2, 3, 511, 512, 0x7ffc, 0x8000, 0xfffe, 0xfffc};
+    for (unsigned odd = 0; odd < 2; odd++) {
+        struct tsr_map_info shape = info;
+        shape.width = (uint16_t)(WIDTH - odd);
+        for (unsigned i = 0; i < shape.width * (sizeof bad_values / sizeof *bad_values); i++) {
+            uint16_t *const place = &map[WIDTH + i % shape.width];
+            const uint16_t kept = *place;
+            size_t len = 77;
+            *place = bad_values[i / shape.width];
+            TEST_ASSERT_EQUAL(TSR_OK,
+                              tsr_map_encode_start(&encoder, &shape, NULL, out, OUT_CAP, scratch, SCRATCH_COUNT));
+            TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_rows(&encoder, map, WIDTH, 2));
+            *place = kept;
+            TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_rows(&encoder, map, WIDTH, 1));
+            TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_finish(&encoder, &len));
+            TEST_ASSERT_EQUAL(77, len);
+        }
+    }
 }
 
 static void test_every_smaller_buffer(void)
@@ -340,6 +356,7 @@ int main(void)
     RUN_TEST(test_start_refuses);
     RUN_TEST(test_start_refuses_bad_info);
     RUN_TEST(test_refused_rows_change_nothing);
+    RUN_TEST(test_bad_value_loses_the_map);
     RUN_TEST(test_every_smaller_buffer);
     RUN_TEST(test_header_refused);
     RUN_TEST(test_decode_start_refuses);

@@ -7,10 +7,11 @@
 
 #include "tsr/codec/gray.h"
 #include "tsr/codec/map.h"
+#include "tsr/vision/quantise.h"
 #include "workbench.h"
 
 #define ROWS_PER_STEP 4u
-#define STEP_LOG2 2u
+#define STEP_LOG2_WHOLE 4u /* whole pixels, as other codecs are compared */
 #define D0_Q4 (-37)
 #define REFERENCE_NEAR 4u
 
@@ -23,6 +24,7 @@ static uint16_t map_scratch[TSR_MAP_SCRATCH_COUNT(WORKBENCH_WIDTH_MAX)];
 static uint8_t gray_coded[TSR_GRAY_ENCODED_LEN_MAX(WORKBENCH_WIDTH_MAX, WORKBENCH_HEIGHT_MAX)];
 static uint8_t gray_decoded[WORKBENCH_PIXELS_MAX];
 static uint16_t map_decoded[WORKBENCH_PIXELS_MAX];
+static uint16_t map_whole[WORKBENCH_PIXELS_MAX];
 
 static size_t encode_gray(const struct workbench_case *bench, const uint8_t *image, uint8_t near, const char *work)
 {
@@ -71,14 +73,16 @@ void workbench_run_gray(const struct workbench_case *bench, const uint8_t *left,
     workbench_store("reference_decoded.out", gray_decoded, pixels);
 }
 
-size_t workbench_run_map(const struct workbench_case *bench, const uint16_t *map, uint8_t *coded, size_t coded_cap)
+/* There and back at a step; the coded map stays in coded. */
+static size_t code_map(const struct workbench_case *bench, const uint16_t *map, uint8_t step_log2, const char *encode,
+                       const char *decode, uint8_t *coded, size_t coded_cap)
 {
     size_t pixels = (size_t)bench->width * bench->height;
     const size_t scratch_count = sizeof map_scratch / sizeof map_scratch[0];
     struct tsr_map_info info = {.width = bench->width,
                                 .height = bench->height,
                                 .disparities = bench->disparities,
-                                .step_log2 = STEP_LOG2,
+                                .step_log2 = step_log2,
                                 .d0_q4 = D0_Q4};
     size_t len = 0;
     workbench_begin();
@@ -90,9 +94,8 @@ size_t workbench_run_map(const struct workbench_case *bench, const uint16_t *map
     if (status == TSR_OK) {
         status = tsr_map_encode_finish(&map_encoder, &len);
     }
-    workbench_end("map_encode", pixels);
-    workbench_expect(status == TSR_OK, "map encode");
-    workbench_store("map_coded.out", coded, len);
+    workbench_end(encode, pixels);
+    workbench_expect(status == TSR_OK, encode);
 
     workbench_begin();
     status = tsr_map_decode_start(&map_decoder, coded, len, NULL, map_scratch, scratch_count, &info);
@@ -100,8 +103,20 @@ size_t workbench_run_map(const struct workbench_case *bench, const uint16_t *map
         status =
             tsr_map_decode_rows(&map_decoder, map_decoded + (size_t)row * bench->width, bench->width, ROWS_PER_STEP);
     }
-    workbench_end("map_decode", pixels);
-    workbench_expect(status == TSR_OK && memcmp(map_decoded, map, pixels * sizeof *map) == 0, "map decode");
+    workbench_end(decode, pixels);
+    workbench_expect(status == TSR_OK && memcmp(map_decoded, map, pixels * sizeof *map) == 0, decode);
+    return len;
+}
+
+size_t workbench_run_map(const struct workbench_case *bench, const uint16_t *map, uint8_t *coded, size_t coded_cap)
+{
+    size_t pixels = (size_t)bench->width * bench->height;
+    memcpy(map_whole, map, pixels * sizeof *map);
+    workbench_expect(tsr_quantise(map_whole, pixels, STEP_LOG2_WHOLE, bench->disparities) == TSR_OK, "quantise");
+    (void)code_map(bench, map_whole, STEP_LOG2_WHOLE, "map_encode_whole", "map_decode_whole", coded, coded_cap);
+
+    size_t len = code_map(bench, map, WORKBENCH_STEP_LOG2, "map_encode", "map_decode", coded, coded_cap);
+    workbench_store("map_coded.out", coded, len);
     workbench_store("map_decoded.out", map_decoded, pixels * sizeof *map);
     return len;
 }

@@ -19,7 +19,6 @@
 
 #define ROWS_PER_STEP 4u /* ROWS_PER_STEP_DEFAULT of the node */
 #define SETTLE_FRAMES 4u /* of change detection, its default */
-#define STEP_LOG2 2u
 #define WORK_LINES_CAP 2048u
 #define REDUCTION 4u
 /* More than any mode of the matcher asks for. */
@@ -169,7 +168,7 @@ static void run_compare(const struct workbench_case *bench, size_t pixels)
     workbench_begin();
     for (unsigned row = 0; row < bench->height; row += ROWS_PER_STEP) {
         enum tsr_status status = tsr_quantise(map + (size_t)row * bench->width, (size_t)ROWS_PER_STEP * bench->width,
-                                              STEP_LOG2, bench->disparities);
+                                              WORKBENCH_STEP_LOG2, bench->disparities);
         workbench_expect(status == TSR_OK, "quantise");
     }
     workbench_end("quantise", pixels);
@@ -180,7 +179,7 @@ static void run_compare(const struct workbench_case *bench, size_t pixels)
     workbench_end("copy", pixels * sizeof *map);
     for (size_t i = 0; i < pixels; i++) { /* another map of the same scene: one row down, one step nearer */
         uint16_t value = map[i >= bench->width ? i - bench->width : i];
-        last_map[i] = value == TSR_DISPARITY_INVALID ? value : (uint16_t)(value + (1u << STEP_LOG2));
+        last_map[i] = value == TSR_DISPARITY_INVALID ? value : (uint16_t)(value + (1u << WORKBENCH_STEP_LOG2));
     }
 
     const struct tsr_similarity_config config = {.width = bench->width, .height = bench->height};

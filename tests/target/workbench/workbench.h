@@ -23,6 +23,7 @@
 #define WORKBENCH_WIDTH_MAX 320u
 #define WORKBENCH_HEIGHT_MAX 240u
 #define WORKBENCH_PIXELS_MAX (WORKBENCH_WIDTH_MAX * WORKBENCH_HEIGHT_MAX)
+#define WORKBENCH_STEP_LOG2 3u /* of the coded map: 1/2 px */
 
 struct workbench_case {
     uint16_t width;

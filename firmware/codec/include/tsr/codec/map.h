@@ -114,6 +114,7 @@ struct tsr_map_model {
 struct tsr_map_encoder {
     struct tsr_map_model model;
     struct tsr_range_encoder range;
+    enum tsr_status status; /* TSR_ERR_ARG is sticky */
     uint8_t header_len;
 };
 
@@ -151,11 +152,9 @@ enum tsr_status tsr_map_encode_start(struct tsr_map_encoder *encoder, const stru
  *   stride   elements from row to row, >= width
  *
  * Returns TSR_AGAIN while rows are missing, TSR_OK with the last row.
- * TSR_ERR_ARG for a null pointer or a value that is not a multiple of the step
- * below 16 * disparities, TSR_ERR_SIZE for a stride < width or more rows than
- * are missing: nothing was coded, the call may be repeated with better rows.
- * TSR_ERR_NOBUF when the coded map outgrew out_cap: the map is lost, every
- * further call returns the same; no byte outside out was written.
+ * TSR_ERR_SIZE for a stride < width or more rows than are missing, TSR_ERR_ARG for a null pointer: nothing was coded.
+ * TSR_ERR_ARG for a value that is neither invalid nor a multiple of the step below 16 * disparities, TSR_ERR_NOBUF when
+ * the coded map outgrew out_cap: the map is lost, every further call returns the same; no byte outside out was written.
  */
 enum tsr_status tsr_map_encode_rows(struct tsr_map_encoder *encoder, const uint16_t *rows, size_t stride,
                                     uint16_t row_count);
@@ -164,7 +163,7 @@ enum tsr_status tsr_map_encode_rows(struct tsr_map_encoder *encoder, const uint1
  * End the map; call once. *len gets the length of the coded map in out.
  *
  * Returns TSR_OK; TSR_AGAIN if rows are missing; TSR_ERR_ARG for a null
- * pointer; TSR_ERR_NOBUF if the coded map did not fit. *len only with TSR_OK.
+ * pointer or after a bad value; TSR_ERR_NOBUF if the coded map did not fit. *len only with TSR_OK.
  */
 enum tsr_status tsr_map_encode_finish(struct tsr_map_encoder *encoder, size_t *len);
 
