@@ -24,7 +24,8 @@ enum tsr_status {
     TSR_ERR_TIMEOUT = -9, /* no answer in the documented time */
     TSR_ERR_IO = -10,     /* the device or the file failed */
     TSR_ERR_NOKEY = -11,  /* no key for this source or key identifier */
-    TSR_ERR_NOROUTE = -12 /* no next hop to this destination */
+    TSR_ERR_NOROUTE = -12, /* no next hop to this destination */
+    TSR_ERR_NOREF = -13    /* what these bytes refer to is not what is held here */
 };
 
 /* The name of a status without its prefix, for logs: "ok", "auth", ...
