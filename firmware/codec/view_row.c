@@ -9,7 +9,7 @@
  * Contrast has no preferred sign: where the expectation is negative, all is
  * coded with the other sign.
  *
- * Scratch holds three rows of values, used in turn, and one row of errors: right of
+ * Scratch holds three rows of pixels, used in turn, and one row of errors: right of
  * the pixel those of the row above, left of it those of its own row. Each has two
  * elements in front and one behind that stand for what lies outside.
  *
@@ -30,6 +30,7 @@
 #define NODES 8u /* contexts of one level: differs, below, 3 of the distance below, 3 above */
 #define DISTANCES 3u
 #define LITERAL_BITS 4u
+#define WEIGHTS 15 /* of all neighbours together */
 #define TILE_BITS_ALLOWED 12u
 
 /* Where each question's contexts begin. */
@@ -47,7 +48,9 @@ static const uint8_t class_of_activity[ACTIVITY_END] = {0, 0, 0, 1, 1, 1, 1, 2, 
 
 void tsr_view_model_reset(struct tsr_view_model *model)
 {
-    memset(model->scratch, 0, TSR_VIEW_SCRATCH_LEN(model->info.width));
+    const size_t rows_len = ROWS * ((size_t)model->info.width + BORDERS);
+    memset(model->scratch, model->info.cap, rows_len);
+    memset(model->scratch + rows_len, 0, TSR_VIEW_SCRATCH_LEN(model->info.width) - rows_len);
     model->level_of = model->info.coarse ? coarse_level_of : exactly;
     model->value_of = model->info.coarse ? coarse_value_of : exactly;
     model->level_max = model->level_of[model->info.cap];
@@ -61,9 +64,9 @@ void tsr_view_model_reset(struct tsr_view_model *model)
     model->allowed_bits = 8u * TSR_VIEW_SLACK_LEN;
 }
 
-static int8_t *row_of(const struct tsr_view_model *model, unsigned row)
+static uint8_t *row_of(const struct tsr_view_model *model, unsigned row)
 {
-    return (int8_t *)model->scratch + (size_t)(row % ROWS) * (model->info.width + BORDERS) + IN_FRONT;
+    return model->scratch + (size_t)(row % ROWS) * (model->info.width + BORDERS) + IN_FRONT;
 }
 
 /* One bit a tile in contexts of its neighbours. Flags keep those of the row of tiles above until they are passed. */
@@ -133,24 +136,25 @@ static int distance_of(int a, int b)
     return a < b ? b - a : a - b;
 }
 
-/* Pixels x .. end - 1 of the row whose values are here. */
-static void code_run(struct tsr_view_model *model, const struct tsr_range_port *port, int8_t *here, uint8_t *errors,
+/* Pixels x .. end - 1 of the row that is here. */
+static void code_run(struct tsr_view_model *model, const struct tsr_range_port *port, uint8_t *here, uint8_t *errors,
                      unsigned x, unsigned end)
 {
-    const int8_t *up = row_of(model, model->row + 2u);
-    const int8_t *up_twice = row_of(model, model->row + 1u);
+    const uint8_t *up = row_of(model, model->row + 2u);
+    const uint8_t *up_twice = row_of(model, model->row + 1u);
+    const int cap = model->info.cap;
     int ww = here[(int)x - 2], w = here[(int)x - 1];
     int nww = up[(int)x - 2], nw = up[(int)x - 1], n = up[x];
     int rise = distance_of(n, nw);
     for (; x < end; x++) {
         const int ne = up[x + 1u];
         const int next_rise = distance_of(ne, n);
-        const int expected_q4 = 6 * w - 2 * ww + 15 * n - 2 * nw + 2 * ne - 5 * up_twice[x] + nww;
+        const int sum = 6 * w - 2 * ww + 15 * n - 2 * nw + 2 * ne - 5 * up_twice[x] + nww;
         const int activity = 2 * (errors[(int)x - 1] + errors[x]) + errors[(int)x - 2] + errors[x + 1u] +
                              distance_of(w, nw) + rise + next_rise;
         ww = w;
-        w = code_value(model, port, expected_q4, activity, here[x], &errors[x]);
-        here[x] = (int8_t)w;
+        w = cap + code_value(model, port, sum - WEIGHTS * cap, activity, here[x] - cap, &errors[x]);
+        here[x] = (uint8_t)w;
         model->allowed_bits += LITERAL_BITS;
         nww = nw;
         nw = n;
@@ -165,27 +169,25 @@ static uint8_t *held_row(const struct tsr_view_model *model)
 }
 
 /* Pixels x .. end - 1 as they are held. */
-static void keep_run(struct tsr_view_model *model, int8_t *here, uint8_t *errors, unsigned x, unsigned end)
+static void keep_run(struct tsr_view_model *model, uint8_t *here, uint8_t *errors, unsigned x, unsigned end)
 {
     const uint8_t *packed = held_row(model);
     model->allowed_bits += LITERAL_BITS * (end - x);
     for (; x < end; x++) {
-        const unsigned pixel = packed[x / 2u] >> 4u * (x % 2u) & 15u;
-        here[x] = (int8_t)((int)pixel - model->info.cap);
+        here[x] = packed[x / 2u] >> 4u * (x % 2u) & 15u;
         errors[x] = 0;
     }
 }
 
-static void hold_row(struct tsr_view_model *model, const int8_t *here)
+static void hold_row(struct tsr_view_model *model, const uint8_t *here)
 {
     const unsigned width = model->info.width;
-    const int cap = model->info.cap;
     uint8_t *packed = held_row(model);
     for (unsigned x = 0; x + 1u < width; x += 2u) {
-        packed[x / 2u] = (uint8_t)((here[x] + cap) | (here[x + 1u] + cap) << 4);
+        packed[x / 2u] = (uint8_t)(here[x] | here[x + 1u] << 4);
     }
     if (width % 2u != 0) {
-        packed[width / 2u] = (uint8_t)(here[width - 1u] + cap);
+        packed[width / 2u] = here[width - 1u];
     }
     model->check = tsr_crc16(model->check, packed, (width + 1u) / 2u);
 }
@@ -194,12 +196,12 @@ void tsr_view_code_row(struct tsr_view_model *model, const struct tsr_range_port
                        const uint8_t *tiles)
 {
     const unsigned width = model->info.width;
-    const int cap = model->info.cap;
-    int8_t *here = row_of(model, model->row);
+    const uint8_t max = (uint8_t)(2u * model->info.cap);
+    uint8_t *here = row_of(model, model->row);
     uint8_t *errors = model->scratch + ROWS * (size_t)(width + BORDERS) + IN_FRONT;
     uint8_t *flags = errors + width + 1u;
     for (unsigned x = 0; in != NULL && x < width; x++) {
-        here[x] = (int8_t)((in[x] < 2 * cap ? in[x] : 2 * cap) - cap);
+        here[x] = in[x] < max ? in[x] : max;
     }
     here[-1] = here[-2] = row_of(model, model->row + 2u)[0];
     if (!model->info.against_held) {
@@ -221,8 +223,8 @@ void tsr_view_code_row(struct tsr_view_model *model, const struct tsr_range_port
     if (model->held != NULL) {
         hold_row(model, here);
     }
-    for (unsigned x = 0; out != NULL && x < width; x++) {
-        out[x] = (uint8_t)(here[x] + cap);
+    if (out != NULL) {
+        memcpy(out, here, width);
     }
     model->row++;
 }

@@ -30,8 +30,9 @@ static uint8_t measure_tile(const uint8_t *pixels, size_t stride, const uint8_t 
         pixels += stride;
         packed += packed_stride;
     }
-    if (width * height < TILE_PIXELS) {
-        sum = sum * TILE_PIXELS / (width * height);
+    const unsigned count = width * height;
+    if (count > 0 && count < TILE_PIXELS) {
+        sum = sum * TILE_PIXELS / count;
     }
     return (uint8_t)(sum < EXCESS_MAX ? sum : EXCESS_MAX);
 }
