@@ -56,23 +56,29 @@ static void watch_until(enum tsr_node_phase phase)
     TEST_ASSERT_TRUE(reach(phase, 2000000));
 }
 
+/* What the wing holds. */
+static uint8_t wing_packed[TSR_VIEW_HELD_LEN(FAKE_WIDTH, FAKE_HEIGHT)];
+static struct tsr_view_held wing_held = {.packed = wing_packed, .packed_cap = sizeof wing_packed};
+static bool against_held;
+
 /* The wing's view of the lead's capture under way: noise, coded. */
 static size_t code_view(uint8_t *body, size_t cap)
 {
-    static struct tsr_gray_encoder encoder;
-    uint8_t scratch[TSR_GRAY_SCRATCH_LEN(FAKE_WIDTH)];
+    static struct tsr_view_encoder encoder;
+    uint8_t scratch[TSR_VIEW_SCRATCH_LEN(FAKE_WIDTH)];
     uint8_t pixels[FAKE_WIDTH * FAKE_HEIGHT];
-    const struct tsr_gray_info info = {FAKE_WIDTH, FAKE_HEIGHT, 0};
+    uint8_t tiles[TSR_VIEW_TILE_COUNT(FAKE_WIDTH, FAKE_HEIGHT)] = {1};
+    const struct tsr_view_info info = {FAKE_WIDTH, FAKE_HEIGHT, 7, true, against_held};
     const struct tsr_body_capture capture = {fake.node.capture_id, fake.node.attempt};
     size_t len = 0;
     for (unsigned i = 0; i < sizeof pixels; i++) {
-        pixels[i] = (uint8_t)(i * i / 7);
+        pixels[i] = (uint8_t)(i * i / 7 % 15);
     }
     tsr_body_write_capture(&capture, body);
-    TEST_ASSERT_EQUAL(TSR_OK, tsr_gray_encode_start(&encoder, &info, body + TSR_BODY_VIEW_HEADER_LEN,
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_view_encode_start(&encoder, &info, &wing_held, tiles, body + TSR_BODY_VIEW_HEADER_LEN,
                                                     cap - TSR_BODY_VIEW_HEADER_LEN, scratch, sizeof scratch));
-    TEST_ASSERT_EQUAL(TSR_OK, tsr_gray_encode_rows(&encoder, pixels, FAKE_WIDTH, FAKE_HEIGHT));
-    TEST_ASSERT_EQUAL(TSR_OK, tsr_gray_encode_finish(&encoder, &len));
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_view_encode_rows(&encoder, pixels, FAKE_WIDTH, FAKE_HEIGHT));
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_view_encode_finish(&encoder, &len));
     return TSR_BODY_VIEW_HEADER_LEN + len;
 }
 
