@@ -68,7 +68,8 @@ static uint8_t uniqueness_default(uint8_t mode)
     }
 }
 
-static struct tsr_match_config resolve(const struct tsr_match_config *config)
+/* Inlined into everything that begins with a check, these two would take a kilobyte of an image. */
+static __attribute__((noinline)) struct tsr_match_config resolve(const struct tsr_match_config *config)
 {
     struct tsr_match_config resolved = *config;
     resolved.disparities = config->disparities != 0 ? config->disparities : DISPARITIES_DEFAULT;
@@ -88,7 +89,7 @@ static bool is_above(uint8_t value, uint8_t max)
 }
 
 /* Of resolved values. */
-static const char *bad_field(const struct tsr_match_config *config)
+static __attribute__((noinline)) const char *bad_field(const struct tsr_match_config *config)
 {
     if (config->width < TSR_MATCH_DISPARITIES_MIN || config->width > TSR_IMAGE_WIDTH_MAX) {
         return "width";
