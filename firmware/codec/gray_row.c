@@ -73,6 +73,13 @@ static void look_around(struct around *a, const uint8_t *here, const uint8_t *up
                                 2u * (w_error + errors[x]) + ne_error);
 }
 
+/* Noise decides a match where the image is flat, and what differs by it is lost between edges. */
+static int near_of(const struct tsr_gray_model *model, unsigned energy)
+{
+    static const uint8_t by_activity[ENERGY_COUNT] = {0, 0, 0, 0, 0, 0, 1, 2, TSR_GRAY_NEAR_BY_ACTIVITY_MAX};
+    return model->info.near == TSR_GRAY_NEAR_BY_ACTIVITY ? by_activity[energy] : model->info.near;
+}
+
 /* Round to the nearest multiple of 2 near + 1, symmetric about zero. */
 static int quantise(int error, int near)
 {
@@ -84,7 +91,7 @@ static uint8_t code_pixel(struct tsr_gray_model *model, const struct tsr_range_p
                           uint8_t pixel)
 {
     struct tsr_range_bit *const contexts = model->contexts;
-    const int near = model->info.near;
+    const int near = near_of(model, a->energy);
     const int error = quantise((int)pixel - a->predicted, near);
     if (!tsr_port_bit(port, &contexts[ZERO_AT + a->energy], error != 0)) {
         return a->predicted;

@@ -1,4 +1,4 @@
-"""Bytes that a wing sends, and what they cost of the map: the figures of docs/codec.md, 4.7.
+"""Bytes that a wing sends, and what they cost of the map: the figures of docs/codec.md, 3.6 and 4.7.
 
     TSR_BUILD=build/release python3 tests/bench/measure_view.py FOLDER_OF_PAIRS [TRIALS]
 
@@ -83,6 +83,16 @@ def next_views(pairs, coarse, trials, sigma, part=OBJECT_PART):
     return sizes, losses
 
 
+def gray_views(pairs, near, mode):
+    sizes, losses = [], []
+    for left, right, truth, disparities in pairs:
+        size, decoded = view_library.code_gray(right, near)
+        sizes.append(size)
+        losses.append(correct(left, right, disparities, truth, mode=vision_library.MODES[mode]) -
+                      correct(left, decoded, disparities, truth, mode=vision_library.MODES[mode]))
+    return sizes, losses
+
+
 def show(name, sizes, losses):
     print(f"{name:40s} {np.mean(sizes):7.0f} bytes ({min(sizes)} .. {max(sizes)})   lost {np.mean(losses):+.4f}, at most "
           f"{np.max(losses):+.4f} of a pair")
@@ -98,6 +108,9 @@ def main(folder, trials):
         for sigma in (0.5, NOISE_SIGMA, 2.0):
             show(f"next, coarse, noise {sigma}", *next_views(pairs, True, trials, sigma))
         show("next, exact", *next_views(pairs, False, trials, NOISE_SIGMA))
+        for near in (0, 8, 1, 2, 4):
+            for mode in ("smooth", "census"):
+                show(f"gray, near {near if near < 8 else 'by activity'}, {mode}", *gray_views(pairs, near, mode))
         show("next, coarse, nothing changed", *next_views(pairs, True, 1, NOISE_SIGMA, 0.0))
 
 

@@ -1,4 +1,4 @@
-"""What a wing sends, as Python calls: prefilter and view codec of the shared library of the build in TSR_BUILD.
+"""What a wing sends, as Python calls: prefilter, view and gray codec of the shared library of the build in TSR_BUILD.
 
 SPDX-License-Identifier: Apache-2.0
 """
@@ -28,6 +28,15 @@ LIB.tsr_view_choose.restype = SIZE
 LIB.tsr_view_encode_start.argtypes = [ANY, ANY, ANY, ANY, ANY, SIZE, ANY, SIZE]
 LIB.tsr_view_encode_rows.argtypes = LIB.tsr_view_decode_rows.argtypes = [ANY, ANY, SIZE, U16]
 LIB.tsr_view_decode_start.argtypes = [ANY, ANY, SIZE, ANY, ANY, SIZE, ANY]
+
+
+class GrayInfo(ctypes.Structure):
+    _fields_ = [("width", U16), ("height", U16), ("near", U8)]
+
+
+LIB.tsr_gray_encode_start.argtypes = [ANY, ANY, ANY, SIZE, ANY, SIZE]
+LIB.tsr_gray_encode_rows.argtypes = LIB.tsr_gray_decode_rows.argtypes = [ANY, ANY, SIZE, U16]
+LIB.tsr_gray_decode_start.argtypes = [ANY, ANY, SIZE, ANY, SIZE, ANY]
 
 
 class Held:
@@ -84,3 +93,19 @@ def decode(data, held=None):
     status = LIB.tsr_view_decode_rows(pointer(state), pointer(filtered), info.width, info.height)
     assert status in (OK, AGAIN), status
     return filtered
+
+
+def code_gray(picture, near):
+    """Bytes of a gray view, and the view as it is decoded."""
+    height, width = picture.shape
+    info, length, picture = GrayInfo(width, height, near), SIZE(), np.ascontiguousarray(picture)
+    out, decoded = np.zeros(picture.size + 512, np.uint8), np.zeros_like(picture)
+    state, scratch = np.zeros(STATE_LEN, np.uint8), np.zeros(3 * width, np.uint8)
+    assert LIB.tsr_gray_encode_start(pointer(state), ctypes.byref(info), pointer(out), out.size, pointer(scratch),
+                                     scratch.size) == OK
+    assert LIB.tsr_gray_encode_rows(pointer(state), pointer(picture), width, height) == OK
+    assert LIB.tsr_gray_encode_finish(pointer(state), ctypes.byref(length)) == OK
+    assert LIB.tsr_gray_decode_start(pointer(state), pointer(out), length.value, pointer(scratch), scratch.size,
+                                     ctypes.byref(info)) == OK
+    assert LIB.tsr_gray_decode_rows(pointer(state), pointer(decoded), width, height) == OK
+    return length.value, decoded

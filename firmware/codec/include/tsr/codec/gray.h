@@ -38,11 +38,16 @@
 #define TSR_GRAY_FORMAT_VERSION 1
 #define TSR_GRAY_HEADER_LEN 6
 #define TSR_GRAY_NEAR_MAX 7
+/* In place of a near: 0 where the image is flat, 1, 2 and 4 where it is busy, by the class of local activity
+ * (docs/codec.md, 3.2). For views to be matched with census descriptors: a third smaller than lossless, .004 of a map's
+ * correct pixels lost, where near 1 everywhere loses .012 to .028 (docs/codec.md, 3.6). */
+#define TSR_GRAY_NEAR_BY_ACTIVITY 8
+#define TSR_GRAY_NEAR_BY_ACTIVITY_MAX 4
 
 struct tsr_gray_info {
     uint16_t width;  /* 1 .. TSR_IMAGE_WIDTH_MAX */
     uint16_t height; /* 1 .. TSR_IMAGE_HEIGHT_MAX */
-    uint8_t near;    /* largest error of a decoded pixel, gray levels, 0 .. 7; 0 for views that will be matched */
+    uint8_t near;    /* largest error of a decoded pixel, gray levels, 0 .. 7, or TSR_GRAY_NEAR_BY_ACTIVITY */
 };
 
 /* Bytes of the scratch rows. */
