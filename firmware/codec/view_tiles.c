@@ -13,28 +13,30 @@
 #define THRESHOLD_MAX 120u
 #define MEDIANS 3u
 #define EXCESS_MAX 255u
+#define LEANING_MIN 32u
 #define TILE_PIXELS (TSR_VIEW_TILE_PX * TSR_VIEW_TILE_PX)
 
-/* Of one tile at column x: width and height are what of it lies in the view. */
-static uint8_t measure_tile(const uint8_t *pixels, size_t stride, const uint8_t *packed, size_t packed_stride,
-                            unsigned x, unsigned width, unsigned height)
+/* |v| as a coarse view has it. */
+static const uint8_t coarse_of[TSR_VIEW_CAP_MAX + 1] = {0, 1, 2, 2, 4, 4, 7, 7};
+
+struct tile {
+    unsigned excess;
+    int contrast; /* above that of the held one */
+};
+
+/* Add a row of a tile, columns x .. end - 1. */
+static void add_row(struct tile *tile, const struct tsr_view_info *info, const uint8_t *pixels, const uint8_t *packed,
+                    unsigned x, unsigned end)
 {
-    unsigned sum = 0;
-    for (unsigned y = 0; y < height; y++) {
-        for (unsigned i = x; i < x + width; i++) {
-            const unsigned held = packed[i / 2u] >> 4u * (i % 2u) & 15u;
-            const unsigned fresh = pixels[i];
-            const unsigned difference = fresh > held ? fresh - held : held - fresh;
-            sum += difference > 0 ? difference - 1u : 0u;
-        }
-        pixels += stride;
-        packed += packed_stride;
+    const int cap = info->cap;
+    for (; x < end; x++) {
+        const int held = (int)(packed[x / 2u] >> 4u * (x % 2u) & 15u) - cap;
+        const int fresh = (pixels[x] < 2 * cap ? pixels[x] : 2 * cap) - cap;
+        const int difference = fresh > held ? fresh - held : held - fresh;
+        const int magnitude = fresh < 0 ? -fresh : fresh;
+        tile->excess += difference > 0 ? (unsigned)difference - 1u : 0u;
+        tile->contrast += (info->coarse ? coarse_of[magnitude] : magnitude) - (held < 0 ? -held : held);
     }
-    const unsigned count = width * height;
-    if (count > 0 && count < TILE_PIXELS) {
-        sum = sum * TILE_PIXELS / count;
-    }
-    return (uint8_t)(sum < EXCESS_MAX ? sum : EXCESS_MAX);
 }
 
 static unsigned rest_of(unsigned side, unsigned from)
@@ -42,10 +44,31 @@ static unsigned rest_of(unsigned side, unsigned from)
     return side - from < TSR_VIEW_TILE_PX ? side - from : TSR_VIEW_TILE_PX;
 }
 
-enum tsr_status tsr_view_compare(const struct tsr_view_held *held, const uint8_t *rows, size_t stride,
-                                 uint16_t first_row, uint16_t row_count, uint8_t *tiles, size_t tiles_cap)
+/* The tile at (x, y), of which pixels holds rows y and on. */
+static void measure_tile(const struct tsr_view_held *held, const uint8_t *pixels, size_t stride, unsigned x, unsigned y,
+                         uint8_t *excess, struct tsr_view_change *change)
 {
-    if (held == NULL || held->packed == NULL || !held->full || rows == NULL || tiles == NULL) {
+    const size_t packed_stride = ((size_t)held->info.width + 1u) / 2u;
+    const uint8_t *packed = held->packed + y * packed_stride;
+    const unsigned width = rest_of(held->info.width, x), height = rest_of(held->info.height, y);
+    const unsigned count = width * height;
+    struct tile tile = {0, 0};
+    for (unsigned i = 0; i < height; i++) {
+        add_row(&tile, &held->info, pixels + i * stride, packed + i * packed_stride, x, x + width);
+    }
+    if (count > 0 && count < TILE_PIXELS) {
+        tile.excess = tile.excess * TILE_PIXELS / count;
+    }
+    *excess = (uint8_t)(tile.excess < EXCESS_MAX ? tile.excess : EXCESS_MAX);
+    change->stronger = (uint16_t)(change->stronger + (tile.contrast > 0 ? 1u : 0u));
+    change->weaker = (uint16_t)(change->weaker + (tile.contrast < 0 ? 1u : 0u));
+}
+
+enum tsr_status tsr_view_compare(const struct tsr_view_held *held, const uint8_t *rows, size_t stride,
+                                 uint16_t first_row, uint16_t row_count, struct tsr_view_change *change)
+{
+    if (held == NULL || held->packed == NULL || !held->full || rows == NULL || change == NULL ||
+        change->tiles == NULL) {
         return TSR_ERR_ARG;
     }
     const unsigned width = held->info.width, height = held->info.height;
@@ -54,15 +77,17 @@ enum tsr_status tsr_view_compare(const struct tsr_view_held *held, const uint8_t
         (end % TSR_VIEW_TILE_PX != 0 && end != height)) {
         return TSR_ERR_SIZE;
     }
-    if (tiles_cap < TSR_VIEW_TILE_COUNT(width, height)) {
+    if (change->tiles_cap < TSR_VIEW_TILE_COUNT(width, height)) {
         return TSR_ERR_NOBUF;
     }
-    const size_t packed_stride = ((size_t)width + 1u) / 2u;
-    uint8_t *tile = tiles + first_row / TSR_VIEW_TILE_PX * TSR_VIEW_TILES_ACROSS(width);
+    if (first_row == 0) {
+        change->stronger = 0;
+        change->weaker = 0;
+    }
+    uint8_t *excess = change->tiles + first_row / TSR_VIEW_TILE_PX * TSR_VIEW_TILES_ACROSS(width);
     for (unsigned y = first_row; y < end; y += TSR_VIEW_TILE_PX) {
         for (unsigned x = 0; x < width; x += TSR_VIEW_TILE_PX) {
-            *tile++ = measure_tile(rows + (y - first_row) * stride, stride, held->packed + y * packed_stride,
-                                   packed_stride, x, rest_of(width, x), rest_of(height, y));
+            measure_tile(held, rows + (y - first_row) * stride, stride, x, y, excess++, change);
         }
     }
     return TSR_OK;
@@ -82,19 +107,29 @@ static unsigned find_median(const uint8_t *tiles, size_t count)
     return median;
 }
 
-size_t tsr_view_choose(uint8_t *tiles, size_t count, uint8_t threshold)
+/* More than two thirds of the tiles whose contrast differs lean to one side. */
+static bool light_has_changed(const struct tsr_view_change *change)
 {
-    if (tiles == NULL) {
+    const unsigned all = (unsigned)change->stronger + change->weaker;
+    const unsigned most = change->stronger > change->weaker ? change->stronger : change->weaker;
+    return all >= LEANING_MIN && 3u * most > 2u * all;
+}
+
+size_t tsr_view_choose(struct tsr_view_change *change, size_t count, uint8_t threshold)
+{
+    if (change == NULL || change->tiles == NULL) {
         return 0;
     }
+    uint8_t *tiles = change->tiles;
     unsigned limit = threshold;
     if (limit == 0) {
         limit = MEDIANS * find_median(tiles, count);
         limit = limit < THRESHOLD_MIN ? THRESHOLD_MIN : limit > THRESHOLD_MAX ? THRESHOLD_MAX : limit;
     }
+    const bool all = light_has_changed(change);
     size_t coded = 0;
     for (size_t i = 0; i < count; i++) {
-        tiles[i] = tiles[i] > limit ? 1u : 0u;
+        tiles[i] = all || tiles[i] > limit ? 1u : 0u;
         coded += tiles[i];
     }
     return coded;

@@ -122,11 +122,14 @@ static struct work compare_view(struct tsr_node *node)
     struct tsr_gray view = tsr_node_left_view(node);
     unsigned left = (unsigned)view.height - node->row;
     uint16_t rows = (uint16_t)(left < TSR_VIEW_TILE_PX ? left : TSR_VIEW_TILE_PX);
+    struct tsr_view_change *change = &node->work.view_change;
+    change->tiles = tiles_of(node);
+    change->tiles_cap = count_tiles(node);
     (void)tsr_view_compare(&node->held, view.pixels + (size_t)node->row * view.stride, view.stride, node->row, rows,
-                           tiles_of(node), count_tiles(node));
+                           change);
     node->row = (uint16_t)(node->row + rows);
     if (node->row == view.height) {
-        (void)tsr_view_choose(tiles_of(node), count_tiles(node), 0);
+        (void)tsr_view_choose(change, count_tiles(node), 0);
         enter(node, TSR_PHASE_ENCODING);
     }
     return work_of(TSR_WORK_VIEW_FILTER, (size_t)rows * view.width);

@@ -96,8 +96,9 @@ static void decode_view(const uint8_t *bytes, size_t len, struct tsr_view_held *
             fuzz_view_tiles[i] = bytes[i % len] & 1u;
         }
         code_view_again(held);
-        require_view(tsr_view_compare(held, fuzz_view, info.width, 0, info.height, fuzz_view_tiles, tiles) == TSR_OK);
-        require_view(tsr_view_choose(fuzz_view_tiles, tiles, 0) == 0);
+        struct tsr_view_change change = {.tiles = fuzz_view_tiles, .tiles_cap = tiles};
+        require_view(tsr_view_compare(held, fuzz_view, info.width, 0, info.height, &change) == TSR_OK);
+        require_view(tsr_view_choose(&change, tiles, 0) == 0);
     }
 }
 

@@ -22,7 +22,7 @@ class ViewHeld(ctypes.Structure):
 LIB.tsr_prefilter_start.argtypes = [ANY, Gray, U8, ANY, SIZE]
 LIB.tsr_prefilter_run.argtypes = [ANY, U16]
 LIB.tsr_view_encoded_len_max.restype = SIZE
-LIB.tsr_view_compare.argtypes = [ANY, ANY, SIZE, U16, U16, ANY, SIZE]
+LIB.tsr_view_compare.argtypes = [ANY, ANY, SIZE, U16, U16, ANY]
 LIB.tsr_view_choose.argtypes = [ANY, SIZE, U8]
 LIB.tsr_view_choose.restype = SIZE
 LIB.tsr_view_encode_start.argtypes = [ANY, ANY, ANY, ANY, ANY, SIZE, ANY, SIZE]
@@ -37,6 +37,10 @@ class GrayInfo(ctypes.Structure):
 LIB.tsr_gray_encode_start.argtypes = [ANY, ANY, ANY, SIZE, ANY, SIZE]
 LIB.tsr_gray_encode_rows.argtypes = LIB.tsr_gray_decode_rows.argtypes = [ANY, ANY, SIZE, U16]
 LIB.tsr_gray_decode_start.argtypes = [ANY, ANY, SIZE, ANY, SIZE, ANY]
+
+
+class ViewChange(ctypes.Structure):
+    _fields_ = [("tiles", ANY), ("tiles_cap", SIZE), ("stronger", U16), ("weaker", U16)]
 
 
 class Held:
@@ -63,8 +67,9 @@ def prefilter(picture, cap=7):
 def choose_tiles(filtered, held, threshold=0):
     height, width = filtered.shape
     tiles = np.zeros(-(-width // TILE) * -(-height // TILE), np.uint8)
-    assert LIB.tsr_view_compare(held.at, pointer(filtered), width, 0, height, pointer(tiles), tiles.size) == OK
-    LIB.tsr_view_choose(pointer(tiles), tiles.size, threshold)
+    change = ViewChange(pointer(tiles), tiles.size)
+    assert LIB.tsr_view_compare(held.at, pointer(filtered), width, 0, height, ctypes.byref(change)) == OK
+    LIB.tsr_view_choose(ctypes.byref(change), tiles.size, threshold)
     return tiles
 
 

@@ -1,6 +1,6 @@
 /*
  * Prefiltered-view codec: header bytes, every status, capacities, what errors
- * leave untouched, what is held when, and the choice of tiles.
+ * leave untouched, what is held when.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -344,60 +344,6 @@ static void test_decode_refuses(void)
     TEST_ASSERT_TRUE(read.against_held);
 }
 
-/* Whole tiles, those cut by the right border (5 columns) and below (5 rows). */
-static void test_excess(void)
-{
-    uint8_t excess[TILES];
-    info.coarse = false;
-    (void)encode();
-    memset(excess, 0x5a, sizeof excess);
-    view[3 * WIDTH + 2] = (uint8_t)((view[3 * WIDTH + 2] + 7) % 15); /* tile 0 */
-    view[8 * WIDTH + 8] += 1;                                        /* tile 4: noise */
-    view[12 * WIDTH + 20] -= 3;                                      /* tile 5, of 25 pixels */
-    TEST_ASSERT_EQUAL(TSR_OK, tsr_view_compare(&wing, view, WIDTH, 0, 8, excess, TILES));
-    TEST_ASSERT_EQUAL_HEX8(0x5a, excess[3]);
-    TEST_ASSERT_EQUAL(TSR_OK, tsr_view_compare(&wing, view + 8 * WIDTH, WIDTH, 8, 5, excess, TILES));
-    TEST_ASSERT_TRUE(excess[0] == 6 || excess[0] == 7);
-    const uint8_t rest[TILES - 1] = {0, 0, 0, 0, 2 * 64 / 25};
-    TEST_ASSERT_EQUAL_HEX8_ARRAY(rest, excess + 1, TILES - 1);
-    for (unsigned i = 0; i < WIDTH * HEIGHT; i++) {
-        view[i] = (uint8_t)(view[i] < 7 ? 14 : 0);
-    }
-    TEST_ASSERT_EQUAL(TSR_OK, tsr_view_compare(&wing, view, WIDTH, 0, HEIGHT, excess, TILES));
-    TEST_ASSERT_EACH_EQUAL_HEX8(255, excess, TILES);
-    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_view_compare(NULL, view, WIDTH, 0, HEIGHT, excess, TILES));
-    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_view_compare(&lead, view, WIDTH, 0, HEIGHT, excess, TILES));
-    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_view_compare(&wing, NULL, WIDTH, 0, HEIGHT, excess, TILES));
-    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_view_compare(&wing, view, WIDTH, 0, HEIGHT, NULL, TILES));
-    TEST_ASSERT_EQUAL(TSR_ERR_NOBUF, tsr_view_compare(&wing, view, WIDTH, 0, HEIGHT, excess, TILES - 1));
-    TEST_ASSERT_EQUAL(TSR_ERR_SIZE, tsr_view_compare(&wing, view, WIDTH - 1, 0, HEIGHT, excess, TILES));
-    TEST_ASSERT_EQUAL(TSR_ERR_SIZE, tsr_view_compare(&wing, view, WIDTH, 0, HEIGHT + 1, excess, TILES));
-    TEST_ASSERT_EQUAL(TSR_ERR_SIZE, tsr_view_compare(&wing, view, WIDTH, 0, 9, excess, TILES));
-    TEST_ASSERT_EQUAL(TSR_ERR_SIZE, tsr_view_compare(&wing, view, WIDTH, 4, 4, excess, TILES));
-}
-
-static void check_choice(const uint8_t excess[5], uint8_t threshold, const uint8_t expected[5])
-{
-    uint8_t chosen[5];
-    size_t count = 0;
-    memcpy(chosen, excess, sizeof chosen);
-    for (unsigned i = 0; i < sizeof chosen; i++) {
-        count += expected[i];
-    }
-    TEST_ASSERT_EQUAL(count, tsr_view_choose(chosen, sizeof chosen, threshold));
-    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, chosen, sizeof chosen);
-}
-
-static void test_choice(void)
-{
-    check_choice((const uint8_t[]){0, 5, 6, 7, 255}, 5, (const uint8_t[]){0, 0, 1, 1, 1});
-    check_choice((const uint8_t[]){20, 0, 0, 21, 1}, 0, (const uint8_t[]){0, 0, 0, 1, 0});        /* 20 at least */
-    check_choice((const uint8_t[]){31, 30, 10, 9, 10}, 0, (const uint8_t[]){1, 0, 0, 0, 0});      /* 3 medians */
-    check_choice((const uint8_t[]){200, 120, 121, 90, 255}, 0, (const uint8_t[]){1, 0, 1, 0, 1}); /* 120 at most */
-    TEST_ASSERT_EQUAL(0, tsr_view_choose(NULL, 5, 1));
-    TEST_ASSERT_EQUAL(0, tsr_view_choose(tiles, 0, 0));
-}
-
 int main(void)
 {
     UNITY_BEGIN();
@@ -412,7 +358,5 @@ int main(void)
     RUN_TEST(test_every_smaller_buffer);
     RUN_TEST(test_header_refused);
     RUN_TEST(test_decode_refuses);
-    RUN_TEST(test_excess);
-    RUN_TEST(test_choice);
     return UNITY_END();
 }

@@ -146,9 +146,10 @@ void workbench_run_view(const struct workbench_case *bench, const uint8_t *left,
     prefilter_view(bench, left);
     info.against_held = true;
     workbench_begin();
-    enum tsr_status status =
-        tsr_view_compare(&view_held[0], view_filtered, bench->width, 0, bench->height, view_tiles, sizeof view_tiles);
-    (void)tsr_view_choose(view_tiles, TSR_VIEW_TILE_COUNT(bench->width, bench->height), 0);
+    struct tsr_view_change change = {.tiles = view_tiles, .tiles_cap = sizeof view_tiles};
+    enum tsr_status status = tsr_view_compare(&view_held[0], view_filtered, bench->width, 0, bench->height, &change);
+    change.stronger = change.weaker = 0; /* tiles are to be kept */
+    (void)tsr_view_choose(&change, TSR_VIEW_TILE_COUNT(bench->width, bench->height), 0);
     workbench_end("view_compare", pixels);
     workbench_expect(status == TSR_OK, "view compare");
     len = encode_view(bench, &info, "view_encode_next");

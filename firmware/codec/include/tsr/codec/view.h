@@ -116,36 +116,48 @@ struct tsr_view_decoder {
 /* The same bound at run time; 0 if info is null or out of range. */
 size_t tsr_view_encoded_len_max(const struct tsr_view_info *info);
 
+/* How a fresh view differs from the held one, tile by tile. */
+struct tsr_view_change {
+    uint8_t *tiles;    /* [tiles_cap] kept, row by row */
+    size_t tiles_cap;  /* >= TSR_VIEW_TILE_COUNT of the view */
+    uint16_t stronger; /* tiles with more contrast than held */
+    uint16_t weaker;   /* and with less */
+};
+
 /*
- * How far a fresh view is from the held one, tile by tile:
+ * Compare rows of a fresh view with the held one, from the top:
  *
- *   excess = sum over the tile of max(0, |P - P_held| - 1), as of 64 pixels, at most 255
+ *   excess   = sum over the tile of max(0, |P - P_held| - 1), as of 64 pixels, at most 255
+ *   contrast = sum over the tile of |v|, of the fresh view as it would be decoded
  *
  *   held        in, full
  *   rows        [row_count * stride] borrowed, prefiltered pixels of rows first_row and on
- *   first_row   a multiple of TSR_VIEW_TILE_PX
+ *   first_row   a multiple of TSR_VIEW_TILE_PX; with 0 the counts begin anew
  *   row_count   a multiple of it too, or what is left of the view
- *   tiles       [tiles_cap] out: those of these rows filled, at their places in the whole view
- *   tiles_cap   >= TSR_VIEW_TILE_COUNT of the held view
+ *   change      in and out: the excess of these rows' tiles filled in, the counts continued
  *
- * About 12 instructions a pixel (Cortex-M4).
+ * About 30 instructions a pixel (Cortex-M4).
  *
  * Returns TSR_OK; TSR_ERR_ARG for a null pointer or a held view that is empty;
  * TSR_ERR_SIZE for rows outside the view or that cut a tile, or a stride < width;
- * TSR_ERR_NOBUF if tiles_cap is too small. On error tiles is untouched.
+ * TSR_ERR_NOBUF if tiles_cap is too small. On error change is untouched.
  */
 enum tsr_status tsr_view_compare(const struct tsr_view_held *held, const uint8_t *rows, size_t stride,
-                                 uint16_t first_row, uint16_t row_count, uint8_t *tiles, size_t tiles_cap);
+                                 uint16_t first_row, uint16_t row_count, struct tsr_view_change *change);
 
 /*
- * From excess to what is coded: tiles[i] becomes 1 if it is above the threshold,
- * else 0, the tile that is kept. threshold 0 chooses it from the tiles themselves:
- * three times their median, 20 at least and 120 at most, so that the noise of the
- * camera need not be known.
+ * From excess to what is coded: change->tiles[i] becomes 1 if it is above the
+ * threshold, else 0, the tile that is kept. threshold 0 chooses it from the count
+ * tiles themselves: three times their median, 20 at least and 120 at most, so that
+ * the noise of the camera need not be known.
  *
- * Returns the number of tiles that are coded; 0 for null tiles.
+ * All become 1 if more than two thirds of at least 32 tiles whose contrast
+ * differs lean to one side: noise and objects do not do that, another light does,
+ * and what is kept would be matched against the left view's new one.
+ *
+ * Returns the number of tiles that are coded; 0 for null arguments.
  */
-size_t tsr_view_choose(uint8_t *tiles, size_t count, uint8_t threshold);
+size_t tsr_view_choose(struct tsr_view_change *change, size_t count, uint8_t threshold);
 
 /*
  * Begin a view: writes the header.

@@ -92,6 +92,7 @@ struct tsr_node {
     struct tsr_ccm ccm;
     union {
         struct tsr_prefilter prefilter;
+        struct tsr_view_change view_change;
         struct tsr_match match;
         struct tsr_median median;
         struct tsr_similarity similarity;
