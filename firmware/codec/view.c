@@ -161,8 +161,8 @@ enum tsr_status tsr_view_encode_finish(struct tsr_view_encoder *encoder, size_t 
 }
 
 /* The header, and where what follows it begins. */
-static enum tsr_status read_header(const uint8_t *bytes, size_t len, struct tsr_view_info *info, uint16_t *check,
-                                   size_t *header_len)
+static __attribute__((noinline)) enum tsr_status
+read_header(const uint8_t *bytes, size_t len, struct tsr_view_info *info, uint16_t *check, size_t *header_len)
 {
     if (len < HEADER_LEN) {
         return TSR_ERR_FORMAT;

@@ -16,8 +16,8 @@
 #define LEANING_MIN 32u
 #define TILE_PIXELS (TSR_VIEW_TILE_PX * TSR_VIEW_TILE_PX)
 
-/* |v| as a coarse view has it. */
-static const uint8_t coarse_of[TSR_VIEW_CAP_MAX + 1] = {0, 1, 2, 2, 4, 4, 7, 7};
+/* |v| as it is decoded, of an exact and of a coarse view. */
+static const uint8_t decoded_of[2][TSR_VIEW_CAP_MAX + 1] = {{0, 1, 2, 3, 4, 5, 6, 7}, {0, 1, 2, 2, 4, 4, 7, 7}};
 
 struct tile {
     unsigned excess;
@@ -29,13 +29,14 @@ static void add_row(struct tile *tile, const struct tsr_view_info *info, const u
                     unsigned x, unsigned end)
 {
     const int cap = info->cap;
+    const uint8_t *decoded = decoded_of[info->coarse ? 1 : 0];
     for (; x < end; x++) {
         const int held = (int)(packed[x / 2u] >> 4u * (x % 2u) & 15u) - cap;
         const int fresh = (pixels[x] < 2 * cap ? pixels[x] : 2 * cap) - cap;
         const int difference = fresh > held ? fresh - held : held - fresh;
         const int magnitude = fresh < 0 ? -fresh : fresh;
         tile->excess += difference > 0 ? (unsigned)difference - 1u : 0u;
-        tile->contrast += (info->coarse ? coarse_of[magnitude] : magnitude) - (held < 0 ? -held : held);
+        tile->contrast += decoded[magnitude] - (held < 0 ? -held : held);
     }
 }
 

@@ -30,6 +30,7 @@ static struct tsr_view_decoder view_decoder;
 static uint16_t view_scratch[TSR_VIEW_SCRATCH_LEN(WORKBENCH_WIDTH_MAX) / 2u + 1u];
 static uint8_t view_filtered[WORKBENCH_PIXELS_MAX];
 static uint8_t view_coded[TSR_VIEW_ENCODED_LEN_MAX(WORKBENCH_WIDTH_MAX, WORKBENCH_HEIGHT_MAX)];
+static uint8_t view_of_lead[WORKBENCH_PIXELS_MAX];
 static uint8_t view_tiles[TSR_VIEW_TILE_COUNT(WORKBENCH_WIDTH_MAX, WORKBENCH_HEIGHT_MAX)];
 static uint8_t view_packed[2][TSR_VIEW_HELD_LEN(WORKBENCH_WIDTH_MAX, WORKBENCH_HEIGHT_MAX)];
 static struct tsr_view_held view_held[2] = {{.packed = view_packed[0], .packed_cap = sizeof view_packed[0]},
@@ -129,7 +130,7 @@ static void decode_view(const struct workbench_case *bench, size_t len, const ch
 }
 
 /* On its own, exact and coarse, then a third of it against what is held: the left view stands for what has changed. */
-void workbench_run_view(const struct workbench_case *bench, const uint8_t *left, const uint8_t *right)
+const uint8_t *workbench_run_view(const struct workbench_case *bench, const uint8_t *left, const uint8_t *right)
 {
     size_t pixels = (size_t)bench->width * bench->height;
     struct tsr_view_info info = {.width = bench->width, .height = bench->height, .cap = TSR_VIEW_CAP_MAX};
@@ -142,6 +143,7 @@ void workbench_run_view(const struct workbench_case *bench, const uint8_t *left,
     len = encode_view(bench, &info, "view_encode");
     workbench_store("view_coded.out", view_coded, len);
     decode_view(bench, len, "view_decode");
+    memcpy(view_of_lead, gray_decoded, pixels);
 
     prefilter_view(bench, left);
     info.against_held = true;
@@ -156,6 +158,7 @@ void workbench_run_view(const struct workbench_case *bench, const uint8_t *left,
     workbench_store("view_next.out", view_coded, len);
     decode_view(bench, len, "view_decode_next");
     workbench_store("view_decoded.out", gray_decoded, pixels);
+    return view_of_lead;
 }
 
 size_t workbench_run_map(const struct workbench_case *bench, const uint16_t *map, uint8_t *coded, size_t coded_cap)

@@ -59,6 +59,9 @@ struct tsr_gray_info {
 /* The longest coded image of this shape, whatever its content: for static buffers. */
 #define TSR_GRAY_ENCODED_LEN_MAX(width, height) ((size_t)(width) * (height) + TSR_GRAY_HEADER_LEN + TSR_GRAY_EXCESS_LEN)
 
+/* Classes of local activity. */
+#define TSR_GRAY_ENERGY_COUNT 9
+
 /* Number of adaptive bits of the model. */
 #define TSR_GRAY_CONTEXT_COUNT 243
 
@@ -66,8 +69,9 @@ struct tsr_gray_info {
 struct tsr_gray_model {
     struct tsr_gray_info info;
     uint8_t *scratch;
-    uint16_t row;          /* next row */
-    uint32_t allowed_bits; /* spent more: store literally */
+    uint16_t row;                         /* next row */
+    uint8_t nears[TSR_GRAY_ENERGY_COUNT]; /* of a pixel, by its class */
+    uint32_t allowed_bits;                /* spent more: store literally */
     struct tsr_range_bit contexts[TSR_GRAY_CONTEXT_COUNT];
 };
 
