@@ -136,7 +136,7 @@ struct tsr_view_change {
  *   row_count   a multiple of it too, or what is left of the view
  *   change      in and out: the excess of these rows' tiles filled in, the counts continued
  *
- * About 30 instructions a pixel (Cortex-M4).
+ * About 37 instructions a pixel (Cortex-M4).
  *
  * Returns TSR_OK; TSR_ERR_ARG for a null pointer or a held view that is empty;
  * TSR_ERR_SIZE for rows outside the view or that cut a tile, or a stride < width;
