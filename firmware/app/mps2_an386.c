@@ -47,8 +47,8 @@
 #define TIME_MAX_US UINT64_C(60000000)
 
 /* At least what tsr_node_plan_memory says (tests/budget/memory_report.py); init refuses less. */
-#define LEAD_ARENA_LEN 107008u
-#define WING_ARENA_LEN 41000u
+#define LEAD_ARENA_LEN 116480u
+#define WING_ARENA_LEN 42496u
 #define LINE_CAP 512u
 
 #define LAB __attribute__((section(".lab"), aligned(TSR_NODE_MEMORY_ALIGN)))

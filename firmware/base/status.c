@@ -22,7 +22,7 @@ const char *tsr_status_name(enum tsr_status status)
     case TSR_ERR_IO: return "io";
     case TSR_ERR_NOKEY: return "nokey";
     case TSR_ERR_NOROUTE: return "noroute";
-    case TSR_ERR_REFERENCE: return "reference";
+    case TSR_ERR_NOREF: return "noref";
     }
     return "unknown";
 }

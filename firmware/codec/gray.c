@@ -23,7 +23,7 @@ _Static_assert(TSR_GRAY_SLACK_LEN + 1u + 24u + 1u + TSR_RANGE_FINISH_LEN_MAX <= 
 static bool is_valid_info(const struct tsr_gray_info *info)
 {
     return info->width >= 1 && info->width <= TSR_IMAGE_WIDTH_MAX && info->height >= 1 &&
-           info->height <= TSR_IMAGE_HEIGHT_MAX && info->near <= TSR_GRAY_NEAR_MAX;
+           info->height <= TSR_IMAGE_HEIGHT_MAX && info->near <= TSR_GRAY_NEAR_BY_ACTIVITY;
 }
 
 size_t tsr_gray_encoded_len_max(const struct tsr_gray_info *info)

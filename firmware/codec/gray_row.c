@@ -28,9 +28,17 @@ struct around {
     unsigned energy; /* class, 0..8 */
 };
 
+/* Noise decides a match where the image is flat, and what differs by it is lost between edges. */
+static const uint8_t nears_by_activity[ENERGY_COUNT] = {0, 0, 0, 0, 0, 0, 1, 2, TSR_GRAY_NEAR_BY_ACTIVITY_MAX};
+_Static_assert(ENERGY_COUNT == TSR_GRAY_ENERGY_COUNT, "the public header sizes the model");
+
 void tsr_gray_model_reset(struct tsr_gray_model *model)
 {
     const size_t width = model->info.width;
+    memset(model->nears, model->info.near, ENERGY_COUNT);
+    if (model->info.near == TSR_GRAY_NEAR_BY_ACTIVITY) {
+        memcpy(model->nears, nears_by_activity, ENERGY_COUNT);
+    }
     memset(model->scratch, ABOVE_FIRST_ROW, 2u * width);
     memset(model->scratch + 2u * width, 0, width);
     tsr_range_bits_reset(model->contexts, TSR_GRAY_CONTEXT_COUNT);
@@ -84,7 +92,7 @@ static uint8_t code_pixel(struct tsr_gray_model *model, const struct tsr_range_p
                           uint8_t pixel)
 {
     struct tsr_range_bit *const contexts = model->contexts;
-    const int near = model->info.near;
+    const int near = model->nears[a->energy];
     const int error = quantise((int)pixel - a->predicted, near);
     if (!tsr_port_bit(port, &contexts[ZERO_AT + a->energy], error != 0)) {
         return a->predicted;

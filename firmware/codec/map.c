@@ -170,7 +170,7 @@ enum tsr_status tsr_map_decode_start(struct tsr_map_decoder *decoder, const uint
         return status;
     }
     if (read.has_reference && (reference == NULL || reference->map == NULL || reference->id != read.reference_id)) {
-        return TSR_ERR_REFERENCE;
+        return TSR_ERR_NOREF;
     }
     const enum tsr_status started =
         tsr_map_model_start(&decoder->model, &read, read.has_reference ? reference : NULL, scratch, scratch_cap);

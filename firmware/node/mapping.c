@@ -29,16 +29,18 @@ static void start_decoding(struct tsr_node *node, const struct tsr_message_heade
     const uint8_t *body = node->message + TSR_MESSAGE_HEADER_LEN;
     size_t body_len = node->inbox.message_len - TSR_MESSAGE_OVERHEAD_LEN;
     const struct tsr_match_config *match = &node->config.match;
-    struct tsr_gray_decoder *decoder = (struct tsr_gray_decoder *)(void *)node->scratch;
+    struct tsr_view_decoder *decoder = (struct tsr_view_decoder *)(void *)node->scratch;
     struct tsr_body_capture capture;
-    struct tsr_gray_info info;
+    struct tsr_view_info info;
     bool ours =
         (!node->partner_heard || header->counter > node->partner_counter) &&
         tsr_body_read_capture(body, body_len, &capture) == TSR_OK && capture.capture_id == node->capture_id &&
         capture.attempt == node->attempt &&
-        tsr_gray_decode_start(decoder, body + TSR_BODY_VIEW_HEADER_LEN, body_len - TSR_BODY_VIEW_HEADER_LEN,
-                              node->scratch + sizeof *decoder, node->scratch_cap - sizeof *decoder, &info) == TSR_OK &&
-        info.width == match->width && info.height == match->height;
+        tsr_view_read_info(body + TSR_BODY_VIEW_HEADER_LEN, body_len - TSR_BODY_VIEW_HEADER_LEN, &info) == TSR_OK &&
+        info.width == match->width && info.height == match->height && info.cap == tsr_match_prefilter_cap(match) &&
+        tsr_view_decode_start(decoder, body + TSR_BODY_VIEW_HEADER_LEN, body_len - TSR_BODY_VIEW_HEADER_LEN,
+                              &node->held, node->scratch + sizeof *decoder, node->scratch_cap - sizeof *decoder,
+                              &info) == TSR_OK;
     node->partner_heard = true;
     node->partner_counter = header->counter > node->partner_counter ? header->counter : node->partner_counter;
     if (!ours) {
@@ -84,9 +86,9 @@ static struct work open_view(struct tsr_node *node)
 static struct work decode_view(struct tsr_node *node)
 {
     struct tsr_gray right = tsr_match_pair_right(node->pair, &node->config.match);
-    struct tsr_gray_decoder *decoder = (struct tsr_gray_decoder *)(void *)node->scratch;
+    struct tsr_view_decoder *decoder = (struct tsr_view_decoder *)(void *)node->scratch;
     uint16_t rows = rows_of_step(node, (unsigned)right.height - node->row);
-    (void)tsr_gray_decode_rows(decoder, right.pixels + (size_t)node->row * right.stride, right.stride, rows);
+    (void)tsr_view_decode_rows(decoder, right.pixels + (size_t)node->row * right.stride, right.stride, rows);
     node->row = (uint16_t)(node->row + rows);
     if (node->row == right.height) {
         enter(node, TSR_PHASE_REFERENCE);
@@ -96,10 +98,11 @@ static struct work decode_view(struct tsr_node *node)
 
 static void start_matching(struct tsr_node *node)
 {
-    const struct tsr_match_config *config = &node->config.match;
-    (void)tsr_match_start_sad(&node->work.match, config, tsr_match_pair_left(node->pair, config),
-                              tsr_match_pair_right(node->pair, config), tsr_match_pair_map(node->pair),
-                              (size_t)config->width * config->height, node->scratch, node->scratch_cap);
+    struct tsr_match_config config = node->config.match;
+    config.right_is_prefiltered = node->config.role == TSR_ROLE_LEAD;
+    (void)tsr_match_start_sad(&node->work.match, &config, tsr_match_pair_left(node->pair, &config),
+                              tsr_match_pair_right(node->pair, &config), tsr_match_pair_map(node->pair),
+                              (size_t)config.width * config.height, node->scratch, node->scratch_cap);
     node->disparities = node->work.match.config.disparities;
     enter(node, TSR_PHASE_MATCHING);
 }

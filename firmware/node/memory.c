@@ -78,6 +78,9 @@ static const char *bad_camera_field(const struct tsr_node_config *config)
     if (config->match.mode > TSR_MATCH_SAD8) { /* what tsr_match_start_sad() takes */
         return "mode";
     }
+    if (config->match.right_is_prefiltered) { /* the role says it */
+        return "right_is_prefiltered";
+    }
     if (config->change.width != config->match.width || config->similarity.width != config->match.width) {
         return "width";
     }
@@ -131,8 +134,9 @@ static size_t message_region_len(const struct tsr_node_config *config)
 {
     struct tsr_map_info info = map_info_of(config);
     size_t gray_len = TSR_GRAY_ENCODED_LEN_MAX(config->match.width, config->match.height);
+    size_t view_len = TSR_VIEW_ENCODED_LEN_MAX(config->match.width, config->match.height);
     size_t body_len = config->role == TSR_ROLE_WING
-                          ? TSR_BODY_VIEW_HEADER_LEN + gray_len
+                          ? TSR_BODY_VIEW_HEADER_LEN + view_len
                           : TSR_BODY_MAP_HEADER_LEN + larger(gray_len, tsr_map_encoded_len_max(&info));
     return smaller(body_len, TSR_CCM_TEXT_MAX) + TSR_MESSAGE_OVERHEAD_LEN;
 }
@@ -140,14 +144,16 @@ static size_t message_region_len(const struct tsr_node_config *config)
 static size_t scratch_region_len(const struct tsr_node_config *config)
 {
     size_t width = config->match.width;
-    size_t gray_encode = sizeof(struct tsr_gray_encoder) + TSR_GRAY_SCRATCH_LEN(width);
     if (config->role == TSR_ROLE_WING) {
-        return gray_encode;
+        return larger(sizeof(struct tsr_view_encoder) + TSR_VIEW_TILE_COUNT(width, config->match.height) +
+                          TSR_VIEW_SCRATCH_LEN(width),
+                      TSR_PREFILTER_SCRATCH_LEN(width));
     }
-    size_t gray_decode = sizeof(struct tsr_gray_decoder) + TSR_GRAY_SCRATCH_LEN(width);
+    size_t gray_encode = sizeof(struct tsr_gray_encoder) + TSR_GRAY_SCRATCH_LEN(width);
+    size_t view_decode = sizeof(struct tsr_view_decoder) + TSR_VIEW_SCRATCH_LEN(width);
     size_t map_encode = sizeof(struct tsr_map_encoder) + sizeof(uint16_t) * TSR_MAP_SCRATCH_COUNT(width);
     size_t match = tsr_match_scratch_len(&config->match);
-    return larger(larger(gray_encode, gray_decode), larger(larger(map_encode, match), TSR_MEDIAN_SCRATCH_LEN(width)));
+    return larger(larger(gray_encode, view_decode), larger(larger(map_encode, match), TSR_MEDIAN_SCRATCH_LEN(width)));
 }
 
 enum tsr_status tsr_node_plan_memory(const struct tsr_node_config *config, struct tsr_memory_plan *plan)
@@ -167,6 +173,9 @@ enum tsr_status tsr_node_plan_memory(const struct tsr_node_config *config, struc
         plan->len[TSR_REGION_PAIR] = tsr_match_pair_len(&config->match);
         plan->len[TSR_REGION_LAST_MAP] = pixels * sizeof(uint16_t);
         plan->len[TSR_REGION_CHANGE] = tsr_change_state_len(&config->change);
+    }
+    if (config->role == TSR_ROLE_LEAD || config->role == TSR_ROLE_WING) {
+        plan->len[TSR_REGION_HELD_VIEW] = TSR_VIEW_HELD_LEN(config->match.width, config->match.height);
     }
     for (unsigned region = 0; region < TSR_REGION_COUNT; region++) {
         size_t aligned = (plan->len[region] + TSR_NODE_MEMORY_ALIGN - 1) & ~(size_t)(TSR_NODE_MEMORY_ALIGN - 1);

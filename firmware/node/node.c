@@ -16,6 +16,8 @@ static void place_regions(struct tsr_node *node, const struct tsr_memory_plan *p
     node->message = arena + plan->offset[TSR_REGION_MESSAGE];
     node->message_cap = plan->len[TSR_REGION_MESSAGE];
     node->last_map = (uint16_t *)(void *)(arena + plan->offset[TSR_REGION_LAST_MAP]);
+    node->held.packed = arena + plan->offset[TSR_REGION_HELD_VIEW];
+    node->held.packed_cap = plan->len[TSR_REGION_HELD_VIEW];
     node->scratch = arena + plan->offset[TSR_REGION_SCRATCH];
     node->scratch_cap = plan->len[TSR_REGION_SCRATCH];
 }
@@ -114,6 +116,7 @@ static struct work step_stage(struct tsr_node *node, uint64_t now_us)
     case TSR_PHASE_ENCODING:
     case TSR_PHASE_SEALING:
     case TSR_PHASE_SENDING: return tsr_node_report_map(node, now_us);
+    case TSR_PHASE_FILTERING: /* a wing's */
     case TSR_PHASE_COUNT: break;
     }
     return no_work();

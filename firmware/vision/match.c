@@ -68,7 +68,8 @@ static uint8_t uniqueness_default(uint8_t mode)
     }
 }
 
-static struct tsr_match_config resolve(const struct tsr_match_config *config)
+/* Inlined into everything that begins with a check, these two would take a kilobyte of an image. */
+static __attribute__((noinline)) struct tsr_match_config resolve(const struct tsr_match_config *config)
 {
     struct tsr_match_config resolved = *config;
     resolved.disparities = config->disparities != 0 ? config->disparities : DISPARITIES_DEFAULT;
@@ -88,7 +89,7 @@ static bool is_above(uint8_t value, uint8_t max)
 }
 
 /* Of resolved values. */
-static const char *bad_field(const struct tsr_match_config *config)
+static __attribute__((noinline)) const char *bad_field(const struct tsr_match_config *config)
 {
     if (config->width < TSR_MATCH_DISPARITIES_MIN || config->width > TSR_IMAGE_WIDTH_MAX) {
         return "width";
@@ -114,6 +115,9 @@ static const char *bad_field(const struct tsr_match_config *config)
     }
     if (is_prefiltered(config) && config->prefilter_cap > cap_max(config)) {
         return "prefilter_cap";
+    }
+    if (!is_prefiltered(config) && config->right_is_prefiltered) {
+        return "right_is_prefiltered";
     }
     if (is_above(config->uniqueness_percent, UNIQUENESS_MAX)) {
         return "uniqueness_percent";
@@ -142,6 +146,14 @@ enum tsr_status tsr_match_check(const struct tsr_match_config *config, const cha
         *field = bad;
     }
     return bad == NULL ? TSR_OK : TSR_ERR_ARG;
+}
+
+uint8_t tsr_match_prefilter_cap(const struct tsr_match_config *config)
+{
+    if (tsr_match_check(config, NULL) != TSR_OK || !is_prefiltered(config)) {
+        return 0;
+    }
+    return resolve(config).prefilter_cap;
 }
 
 /* Bytes of the scratch's columns and what the mode keeps with them, and of what it keeps behind all. */

@@ -95,7 +95,11 @@ void tsr_mve_prefilter_row(const struct tsr_match *match, unsigned y)
     uint8_t *kept = tsr_match_share_scratch(match).columns;
     int cap = match->config.prefilter_cap;
     filter_row(&match->left, y, kept, cap, false);
-    filter_row(&match->right, y, kept + 2u * match->config.width, cap, true);
+    if (match->config.right_is_prefiltered) {
+        tsr_match_take_filtered_row(match, y);
+    } else {
+        filter_row(&match->right, y, kept + 2u * match->config.width, cap, true);
+    }
 }
 
 /* Lanes whose right pixel lies left of the picture take its first one, at lane `limit`: eq. (11). */

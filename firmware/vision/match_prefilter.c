@@ -3,41 +3,19 @@
  *
  * SPDX-License-Identifier: Apache-2.0
  */
-#include <string.h>
-
 #include "match_stages.h"
+#include "prefilter_row.h"
 
-/* The Sobel sum lies in -1020 .. 1020; a multiple of 4 keeps it positive while it is divided. */
-#define SOBEL_BIAS 1024
-
-/* sums[x + 1] = a + 2 b + c of column x; the columns at both ends are replicated. */
-static void add_vertically(const uint8_t *restrict above, const uint8_t *restrict row, const uint8_t *restrict below,
-                           uint16_t *restrict sums, unsigned width)
+void tsr_match_take_filtered_row(const struct tsr_match *match, unsigned y)
 {
-    for (unsigned x = 0; x < width; x++) {
-        sums[x + 1] = (uint16_t)(above[x] + 2 * row[x] + below[x]);
+    uint8_t *first = match->right.pixels + (size_t)y * match->right.stride;
+    uint8_t *last = first + (match->config.width - 1u);
+    uint8_t max = (uint8_t)(2u * match->config.prefilter_cap);
+    for (; first <= last; first++, last--) {
+        uint8_t left = *first < max ? *first : max;
+        *first = *last < max ? *last : max;
+        *last = left;
     }
-    sums[0] = sums[1];
-    sums[width + 1] = sums[width];
-}
-
-static uint8_t clip_derivative(const uint16_t *sums, unsigned x, int cap)
-{
-    int value = (int)((unsigned)(sums[x + 2] - sums[x] + SOBEL_BIAS + 2) / 4u) - SOBEL_BIAS / 4;
-    value = value < -cap ? -cap : value;
-    value = value > cap ? cap : value;
-    return (uint8_t)(value + cap);
-}
-
-static void filter_row(const struct tsr_gray *frame, unsigned y, uint8_t *above, uint16_t *sums)
-{
-    uint8_t *row = frame->pixels + (size_t)y * frame->stride;
-    const uint8_t *below = y + 1u < frame->height ? row + frame->stride : row;
-    if (y == 0) {
-        memcpy(above, row, frame->width);
-    }
-    add_vertically(above, row, below, sums, frame->width);
-    memcpy(above, row, frame->width);
 }
 
 void tsr_match_prefilter_row(const struct tsr_match *match, unsigned y)
@@ -48,14 +26,10 @@ void tsr_match_prefilter_row(const struct tsr_match *match, unsigned y)
     uint8_t *right_above = left_above + width;
     uint16_t *sums = (uint16_t *)(void *)(right_above + width);
 
-    filter_row(&match->left, y, left_above, sums);
-    uint8_t *left = match->left.pixels + (size_t)y * match->left.stride;
-    for (unsigned x = 0; x < width; x++) {
-        left[x] = clip_derivative(sums, x, cap);
-    }
-    filter_row(&match->right, y, right_above, sums);
-    uint8_t *right = match->right.pixels + (size_t)y * match->right.stride;
-    for (unsigned x = 0; x < width; x++) {
-        right[x] = clip_derivative(sums, width - 1u - x, cap);
+    tsr_prefilter_row(&match->left, y, cap, false, left_above, sums);
+    if (match->config.right_is_prefiltered) {
+        tsr_match_take_filtered_row(match, y);
+    } else {
+        tsr_prefilter_row(&match->right, y, cap, true, right_above, sums);
     }
 }

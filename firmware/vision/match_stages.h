@@ -55,7 +55,8 @@ unsigned tsr_match_claim_shift(uint8_t mode);
 struct tsr_match_kernel {
     const char *name;
     /* Replace row y of both frames by eq. (10); the right one is stored mirrored,
-     * so that ascending d reads ascending addresses. Rows in ascending order. */
+     * so that ascending d reads ascending addresses (and only mirrored if it is
+     * prefiltered already). Rows in ascending order. */
     void (*prefilter_row)(const struct tsr_match *match, unsigned y);
     /* Column sums times + one more row: columns[x][d] += times A(clip(x), y, d). */
     void (*add_row)(const struct tsr_match *match, unsigned y, unsigned times);
@@ -79,6 +80,8 @@ extern const struct tsr_match_method tsr_match_method_plain;
 
 /* The portable kernel in pieces. */
 void tsr_match_prefilter_row(const struct tsr_match *match, unsigned y);
+/* Row y of a right frame that is prefiltered already: mirrored, values above 2 cap cut to it. */
+void tsr_match_take_filtered_row(const struct tsr_match *match, unsigned y);
 void tsr_match_add_row(const struct tsr_match *match, unsigned y, unsigned times);
 void tsr_match_move_columns(const struct tsr_match *match, unsigned y_new, unsigned y_old);
 void tsr_match_finish_row(const struct tsr_match *match, unsigned y);

@@ -61,7 +61,11 @@ static void prefilter_row(const struct tsr_match *match, unsigned y)
     uint8_t *left_above = tsr_match_share_scratch(match).columns;
     uint8_t *right_above = left_above + match->config.width;
     filter_row(&match->left, y, left_above, match->config.prefilter_cap, false);
-    filter_row(&match->right, y, right_above, match->config.prefilter_cap, true);
+    if (match->config.right_is_prefiltered) {
+        tsr_match_take_filtered_row(match, y);
+    } else {
+        filter_row(&match->right, y, right_above, match->config.prefilter_cap, true);
+    }
 }
 
 #endif

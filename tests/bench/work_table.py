@@ -22,9 +22,10 @@ KINDS = {
     "median": (("median",), "pixel"),
     "compare": (("quantise", "similarity"), "pixel"),
     "map_encode": (("map_encode",), "pixel"),
-    "view_encode": (("gray_encode_view",), "pixel"),
+    "view_filter": (("view_prefilter", "view_compare"), "pixel"),
+    "view_encode": (("view_encode",), "pixel"),
     "reference_encode": (("gray_encode_reference",), "pixel"),
-    "view_decode": (("gray_decode_view",), "pixel"),
+    "view_decode": (("view_decode",), "pixel"),
     "seal": (("seal_message", "open_message", "seal_frame", "open_frame"), "byte"),
     "copy": (("copy",), "byte"),
 }

@@ -15,7 +15,7 @@ import site_run
 
 DOCUMENT = footprint.SOURCE / "docs/memory.md"
 BEGIN, END = "<!-- tables: begin -->\n", "<!-- tables: end -->\n"
-REGIONS = ("pair", "message", "last map", "change", "scratch")
+REGIONS = ("pair", "message", "last map", "change", "held view", "scratch")
 TOLERANCE = 0.05
 
 

@@ -44,7 +44,7 @@ static void code_gray_again(const struct tsr_gray_info *info)
                                        &read) == TSR_OK);
     require_gray(tsr_gray_decode_rows(&decoder, fuzz_gray_again, info->width, info->height) == TSR_OK);
     for (size_t i = 0; i < (size_t)info->width * info->height; i++) {
-        require_gray(abs((int)fuzz_gray[i] - (int)fuzz_gray_again[i]) <= info->near);
+        require_gray(abs((int)fuzz_gray[i] - (int)fuzz_gray_again[i]) <= info->near); /* by activity: 4, below its 8 */
     }
 }
 

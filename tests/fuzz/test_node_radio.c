@@ -128,12 +128,14 @@ static size_t make_body(uint8_t kind, uint8_t *body, size_t cap)
     const struct tsr_body_capture capture = {(uint16_t)(fake.node.capture_id + (roll(4) == 0 ? roll(3) : 0)),
                                              (uint8_t)(fake.node.attempt + (roll(4) == 0 ? 1 : 0))};
     tsr_body_write_capture(&capture, body);
-    if (kind == TSR_MESSAGE_VIEW && cap > 60) { /* a coded image of the right size, its bits noise */
-        const struct tsr_gray_info info = {FAKE_WIDTH, FAKE_HEIGHT, 0};
-        static struct tsr_gray_encoder encoder;
-        uint8_t scratch[TSR_GRAY_SCRATCH_LEN(FAKE_WIDTH)];
-        (void)tsr_gray_encode_start(&encoder, &info, body + TSR_BODY_VIEW_HEADER_LEN, TSR_GRAY_HEADER_LEN, scratch,
-                                    sizeof scratch);
+    if (kind == TSR_MESSAGE_VIEW && cap > 60) { /* a coded view of the right size, its bits noise */
+        const struct tsr_view_info info = {FAKE_WIDTH, FAKE_HEIGHT, 7, true, fake.node.held.full && roll(2) == 0};
+        struct tsr_view_held held = fake.node.held; /* a copy: the node's stays as it is */
+        static const uint8_t tiles[TSR_VIEW_TILE_COUNT(FAKE_WIDTH, FAKE_HEIGHT)];
+        static struct tsr_view_encoder encoder;
+        uint8_t scratch[TSR_VIEW_SCRATCH_LEN(FAKE_WIDTH)];
+        (void)tsr_view_encode_start(&encoder, &info, info.against_held ? &held : NULL, tiles,
+                                    body + TSR_BODY_VIEW_HEADER_LEN, TSR_VIEW_HEADER_LEN_MAX, scratch, sizeof scratch);
         return len > 40 ? len : 40;
     }
     return TSR_BODY_WAKE_LEN;

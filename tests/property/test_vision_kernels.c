@@ -1,7 +1,8 @@
 /*
  * Every kernel of the matcher that runs here gives the portable one's map, bit
  * for bit: all windows, disparity counts, search starts, modes and caps, odd sizes,
- * strides and alignments, any content, tests on and off. Runs on the host and on the board.
+ * strides and alignments, any content, tests on and off, and with a right view that
+ * is prefiltered already. Runs on the host and on the board.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -10,6 +11,7 @@
 #include <string.h>
 
 #include "tsr/vision/match.h"
+#include "tsr/vision/prefilter.h"
 #include "unity.h"
 
 #define WIDTH_MAX 176
@@ -187,6 +189,28 @@ static void expect_wanted(const struct tsr_match_config *config, const char *whe
     }
 }
 
+/* The right view filtered as another board does it, to the same map. */
+static void compare_prefiltered(struct tsr_match_config config, unsigned stride, unsigned offset)
+{
+    static uint8_t gray[WIDTH_MAX * HEIGHT_MAX];
+    static uint16_t filter_scratch[TSR_PREFILTER_SCRATCH_LEN(WIDTH_MAX) / 2];
+    struct tsr_gray right = {scene[1], config.width, config.height, config.width};
+    struct tsr_prefilter filter;
+    memcpy(gray, scene[1], sizeof gray);
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_prefilter_start(&filter, right, tsr_match_prefilter_cap(&config),
+                                                  (uint8_t *)filter_scratch, sizeof filter_scratch));
+    while (tsr_prefilter_run(&filter, (uint16_t)(1u + below(9))) == TSR_AGAIN) {
+    }
+    config.right_is_prefiltered = true;
+    for (unsigned i = 0; tsr_match_kernel_at(i) != NULL; i++) {
+        config.kernel = tsr_match_kernel_at(i);
+        run(&config, stride, offset);
+        expect_guards(&config, stride, offset);
+        expect_wanted(&config, "differs with a prefiltered right view");
+    }
+    memcpy(scene[1], gray, sizeof gray);
+}
+
 static void compare(struct tsr_match_config config)
 {
     unsigned stride = config.width + (below(3) == 0 ? 0 : below(10));
@@ -205,6 +229,9 @@ static void compare(struct tsr_match_config config)
         expect_wanted(&config, "differs from the portable kernel");
         run_in_pair(&config);
         expect_wanted(&config, "differs in the pair layout");
+    }
+    if (config.mode <= TSR_MATCH_SAD8 && below(2) == 0) {
+        compare_prefiltered(config, stride, offset);
     }
 }
 

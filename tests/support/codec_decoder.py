@@ -218,7 +218,7 @@ class GrayDecoder:
         self.near = data[1]
         self.width = data[2] | data[3] << 8
         self.height = data[4] | data[5] << 8
-        if self.near > 7 or not 1 <= self.width <= 640 or not 1 <= self.height <= 480:
+        if self.near > 8 or not 1 <= self.width <= 640 or not 1 <= self.height <= 480:
             raise FormatError
         self.coder = RangeDecoder(data[6:])
         self.Z, self.S, self.M = contexts(9), contexts(27), contexts(9, 23)
@@ -232,7 +232,8 @@ class GrayDecoder:
 
         below = self.coder.bit(self.S[side(W) + 3 * side(N) + 9 * side(NE)])
         q = 1 + self.coder.magnitude(self.M[energy])
-        R = P + (-q if below else q) * (2 * self.near + 1)
+        near = (0, 0, 0, 0, 0, 0, 1, 2, 4)[energy] if self.near == 8 else self.near
+        R = P + (-q if below else q) * (2 * near + 1)
         return min(max(R, 0), 255)
 
     def decode(self):

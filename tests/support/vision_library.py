@@ -26,7 +26,7 @@ class Gray(ctypes.Structure):
 class MatchConfig(ctypes.Structure):
     _fields_ = [("width", U16), ("height", U16), ("disparities", U16), ("window", U8), ("mode", U8), ("prefilter_cap", U8),
                 ("uniqueness_percent", U8), ("texture_min", U8), ("lr_tolerance_px", U8), ("search_start_px", I16),
-                ("kernel", ANY)]
+                ("right_is_prefiltered", ctypes.c_bool), ("kernel", ANY)]
 
 
 class SpeckleConfig(ctypes.Structure):

@@ -18,12 +18,12 @@ INVALID_Q4 = 0xffff
 
 
 def expected_map(work):
-    """What the host makes of the same pictures, through the codec and back."""
+    """What the host makes of the same pictures, the right one as the wing sends it."""
     host = board.build_host_workbench(work)
     left, right = (pictures.read_pgm(path)[2] for path in site_run.views(work / "scene"))
     folder = pictures.write_case(work / "host", bytes(len(left)), left, right)
     board.run([host, *SHAPE], cwd=folder)
-    data = (folder / "map_decoded.out").read_bytes()
+    data = (folder / "lead_map.out").read_bytes()
     return [float("inf") if value == INVALID_Q4 else value / 16 for value in struct.unpack(f"<{len(data) // 2}H", data)]
 
 

@@ -97,14 +97,14 @@ static void test_lengths_near_the_largest_do_not_wrap(void)
 
 static void test_every_status_has_its_name(void)
 {
-    for (int status = TSR_ERR_NOROUTE; status <= TSR_AGAIN; status++) {
+    for (int status = TSR_ERR_NOREF; status <= TSR_AGAIN; status++) {
         TEST_ASSERT_TRUE(strcmp(tsr_status_name((enum tsr_status)status), "unknown") != 0);
-        for (int other = TSR_ERR_NOROUTE; other < status; other++) {
+        for (int other = TSR_ERR_NOREF; other < status; other++) {
             TEST_ASSERT_TRUE(
                 strcmp(tsr_status_name((enum tsr_status)status), tsr_status_name((enum tsr_status)other)) != 0);
         }
     }
-    TEST_ASSERT_EQUAL_STRING("unknown", tsr_status_name((enum tsr_status)(TSR_ERR_NOROUTE - 1)));
+    TEST_ASSERT_EQUAL_STRING("unknown", tsr_status_name((enum tsr_status)(TSR_ERR_NOREF - 1)));
     TEST_ASSERT_EQUAL_STRING("unknown", tsr_status_name((enum tsr_status)(TSR_AGAIN + 1)));
 }
 

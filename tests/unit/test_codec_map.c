@@ -299,9 +299,9 @@ static void test_against_a_reference(void)
     decode_all(out, len, &against);
     TEST_ASSERT_EQUAL_UINT16_ARRAY(map, decoded, WIDTH * HEIGHT);
 
-    TEST_ASSERT_EQUAL(TSR_ERR_REFERENCE, tsr_map_decode_start(&decoder, out, len, NULL, scratch, SCRATCH_COUNT, &read));
+    TEST_ASSERT_EQUAL(TSR_ERR_NOREF, tsr_map_decode_start(&decoder, out, len, NULL, scratch, SCRATCH_COUNT, &read));
     against.id++;
-    TEST_ASSERT_EQUAL(TSR_ERR_REFERENCE,
+    TEST_ASSERT_EQUAL(TSR_ERR_NOREF,
                       tsr_map_decode_start(&decoder, out, len, &against, scratch, SCRATCH_COUNT, &read));
     against.id--;
     against.stride = WIDTH - 1;

@@ -139,6 +139,21 @@ static void test_rare_bits_are_cheap(void)
     TEST_ASSERT_LESS_THAN(40, len);
 }
 
+static void test_trained_start(void)
+{
+    static const uint8_t counts[16] = {0, 1, 2, 3, 4, 6, 8, 11, 15, 20, 26, 33, 40, 48, 54, 60};
+    struct tsr_range_bit contexts[16];
+    uint16_t prior[16];
+    for (unsigned i = 0; i < 16; i++) {
+        prior[i] = (uint16_t)((2 + 272 * i) << 4 | i);
+    }
+    tsr_range_bits_load(contexts, prior, 16);
+    for (unsigned i = 0; i < 16; i++) {
+        TEST_ASSERT_EQUAL((2 + 272 * i) * 16, contexts[i].p_one_q16);
+        TEST_ASSERT_EQUAL(counts[i], contexts[i].count);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -148,5 +163,6 @@ int main(void)
     RUN_TEST(test_finish_takes_the_shortest_number);
     RUN_TEST(test_nothing_takes_no_byte);
     RUN_TEST(test_rare_bits_are_cheap);
+    RUN_TEST(test_trained_start);
     return UNITY_END();
 }

@@ -11,9 +11,16 @@
 static struct tsr_node_config config;
 static struct fake_node fake;
 
+/* What the wing of a lead holds, and whether its next view is against it. */
+static uint8_t wing_packed[TSR_VIEW_HELD_LEN(FAKE_WIDTH, FAKE_HEIGHT)];
+static struct tsr_view_held wing_held;
+static bool against_held;
+
 void setUp(void)
 {
     memset(&fake, 0, sizeof fake);
+    wing_held = (struct tsr_view_held){.packed = wing_packed, .packed_cap = sizeof wing_packed};
+    against_held = false;
 }
 void tearDown(void)
 {
@@ -59,20 +66,21 @@ static void watch_until(enum tsr_node_phase phase)
 /* The wing's view of the lead's capture under way: noise, coded. */
 static size_t code_view(uint8_t *body, size_t cap)
 {
-    static struct tsr_gray_encoder encoder;
-    uint8_t scratch[TSR_GRAY_SCRATCH_LEN(FAKE_WIDTH)];
+    static struct tsr_view_encoder encoder;
+    uint8_t scratch[TSR_VIEW_SCRATCH_LEN(FAKE_WIDTH)];
     uint8_t pixels[FAKE_WIDTH * FAKE_HEIGHT];
-    const struct tsr_gray_info info = {FAKE_WIDTH, FAKE_HEIGHT, 0};
+    uint8_t tiles[TSR_VIEW_TILE_COUNT(FAKE_WIDTH, FAKE_HEIGHT)] = {1};
+    const struct tsr_view_info info = {FAKE_WIDTH, FAKE_HEIGHT, 7, true, against_held};
     const struct tsr_body_capture capture = {fake.node.capture_id, fake.node.attempt};
     size_t len = 0;
     for (unsigned i = 0; i < sizeof pixels; i++) {
-        pixels[i] = (uint8_t)(i * i / 7);
+        pixels[i] = (uint8_t)(i * i / 7 % 15);
     }
     tsr_body_write_capture(&capture, body);
-    TEST_ASSERT_EQUAL(TSR_OK, tsr_gray_encode_start(&encoder, &info, body + TSR_BODY_VIEW_HEADER_LEN,
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_view_encode_start(&encoder, &info, &wing_held, tiles, body + TSR_BODY_VIEW_HEADER_LEN,
                                                     cap - TSR_BODY_VIEW_HEADER_LEN, scratch, sizeof scratch));
-    TEST_ASSERT_EQUAL(TSR_OK, tsr_gray_encode_rows(&encoder, pixels, FAKE_WIDTH, FAKE_HEIGHT));
-    TEST_ASSERT_EQUAL(TSR_OK, tsr_gray_encode_finish(&encoder, &len));
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_view_encode_rows(&encoder, pixels, FAKE_WIDTH, FAKE_HEIGHT));
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_view_encode_finish(&encoder, &len));
     return TSR_BODY_VIEW_HEADER_LEN + len;
 }
 
@@ -112,7 +120,7 @@ static void hear_status(uint8_t key_use, uint16_t origin, uint16_t message_id, e
     status.state = (uint8_t)state;
     TEST_ASSERT_EQUAL(TSR_OK, tsr_body_write_status(&status, body, sizeof body, &len));
     const struct fake_message message = {TSR_MESSAGE_STATUS, key_use, origin, fake.node.config.address, body, len};
-    fake_node_hear_message(&fake, origin == FAKE_WING ? FAKE_WING : FAKE_RELAY, &message);
+    fake_node_hear_message(&fake, key_use == TSR_KEY_PAIR ? origin : FAKE_RELAY, &message);
     (void)fake_node_run(&fake, STEPS_MAX);
 }
 
@@ -134,6 +142,33 @@ static void test_lead_sends_a_map(void)
     watch_until(TSR_PHASE_IDLE);
     TEST_ASSERT_EQUAL(1, counters()->maps_sent);
     TEST_ASSERT_TRUE(fake.node.has_last_map);
+}
+
+/* A view against one that the lead does not hold is refused, and the lead waits for another. */
+static void test_lead_takes_a_view_against_what_it_holds(void)
+{
+    lead_to_sending();
+    (void)reach(TSR_PHASE_IDLE, 300000);
+    hear_status(TSR_KEY_NODE, TSR_ADDRESS_SINK, fake.node.sender.message_id, TSR_DELIVERY_COMMITTED);
+    watch_until(TSR_PHASE_IDLE);
+    watch_until(TSR_PHASE_RECEIVING);
+    TEST_ASSERT_EQUAL_HEX16(wing_held.check, fake.node.held.check);
+    against_held = true;
+    const uint16_t check = wing_held.check;
+    wing_held.check ^= 1u;
+    make_view();
+    hear_view();
+    (void)fake_node_run(&fake, STEPS_MAX);
+    TEST_ASSERT_EQUAL(TSR_PHASE_RECEIVING, tsr_node_get_phase(&fake.node));
+    TEST_ASSERT_EQUAL(1, counters()->dropped_foreign);
+    TEST_ASSERT_TRUE(fake.node.held.full && fake.node.held.check == check);
+    memcpy(wing_packed, fake.node.held.packed, sizeof wing_packed);
+    wing_held.check = check;
+    make_view();
+    hear_view();
+    watch_until(TSR_PHASE_MATCHING);
+    TEST_ASSERT_EQUAL_HEX16(wing_held.check, fake.node.held.check);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(wing_packed, fake.node.held.packed, sizeof wing_packed);
 }
 
 /* A map belongs to the node and the sink: the wing, whose STATUS is authentic
@@ -216,6 +251,46 @@ static void wing_hears_wake(uint8_t key_use, uint16_t origin, uint16_t capture_i
     const struct fake_message message = {TSR_MESSAGE_WAKE, key_use, origin, FAKE_WING, body, sizeof body};
     fake_node_hear_message(&fake, FAKE_LEAD, &message);
     (void)fake_node_run(&fake, 1); /* the frame only */
+}
+
+/* The first byte of the view being sent next, while it is plain: 0x01 on its own, 0x11 against the held one. */
+static uint8_t wing_codes_view(uint16_t capture_id)
+{
+    wing_hears_wake(TSR_KEY_PAIR, FAKE_LEAD, capture_id, 1);
+    TEST_ASSERT_TRUE(reach(TSR_PHASE_CAPTURING, 100000));
+    TEST_ASSERT_TRUE(reach(TSR_PHASE_SEALING, 100000));
+    const uint8_t *coded = fake.node.message + TSR_MESSAGE_HEADER_LEN + TSR_BODY_VIEW_HEADER_LEN;
+    TEST_ASSERT_EQUAL_HEX8(0x1f, coded[1]);
+    return coded[0];
+}
+
+static void wing_is_answered(enum tsr_delivery state)
+{
+    TEST_ASSERT_TRUE(reach(TSR_PHASE_SENDING, 100000));
+    (void)reach(TSR_PHASE_IDLE, 100000); /* all fragments out, polled */
+    hear_status(TSR_KEY_PAIR, FAKE_LEAD, fake.node.sender.message_id, state);
+    TEST_ASSERT_TRUE(reach(TSR_PHASE_IDLE, 100000));
+}
+
+/* Against the last view only once the lead is known to have it. */
+static void test_wing_refers_to_what_was_accepted(void)
+{
+    start(TSR_ROLE_WING);
+    TEST_ASSERT_EQUAL_HEX8(0x01, wing_codes_view(1));
+    wing_is_answered(TSR_DELIVERY_COMMITTED);
+    const uint16_t check = fake.node.held.check;
+    TEST_ASSERT_EQUAL_HEX8(0x11, wing_codes_view(2));
+    const uint8_t *coded = fake.node.message + TSR_MESSAGE_HEADER_LEN + TSR_BODY_VIEW_HEADER_LEN;
+    TEST_ASSERT_EQUAL_HEX16(check, coded[6] | coded[7] << 8);
+    wing_is_answered(TSR_DELIVERY_COMMITTED);
+    TEST_ASSERT_EQUAL_HEX8(0x11, wing_codes_view(3));
+    wing_is_answered(TSR_DELIVERY_REFUSED);
+    TEST_ASSERT_EQUAL_HEX8(0x01, wing_codes_view(4));
+    wing_hears_wake(TSR_KEY_PAIR, FAKE_LEAD, 5, 1); /* the view under way is dropped */
+    (void)fake_node_run(&fake, STEPS_MAX);
+    TEST_ASSERT_EQUAL_HEX8(0x01, wing_codes_view(5));
+    TEST_ASSERT_EQUAL(2, counters()->views_sent);
+    TEST_ASSERT_EQUAL(2, counters()->views_lost);
 }
 
 /* Later attempts replace the earlier one until the camera is ordered, 1 ms before the instant. */
@@ -337,10 +412,12 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_lead_sends_a_map);
+    RUN_TEST(test_lead_takes_a_view_against_what_it_holds);
     RUN_TEST(test_wing_cannot_accept_a_map);
     RUN_TEST(test_answer_while_sealing_keeps_the_message_id);
     RUN_TEST(test_early_view_is_not_refused);
     RUN_TEST(test_contradiction_after_the_last_fragment);
+    RUN_TEST(test_wing_refers_to_what_was_accepted);
     RUN_TEST(test_wing_captures_at_the_last_attempt);
     RUN_TEST(test_wing_too_late_does_not_capture);
     RUN_TEST(test_wing_obeys_its_lead_alone);

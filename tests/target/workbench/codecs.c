@@ -1,5 +1,5 @@
 /*
- * Both codecs, there and back.
+ * The codecs, there and back.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -7,6 +7,8 @@
 
 #include "tsr/codec/gray.h"
 #include "tsr/codec/map.h"
+#include "tsr/codec/view.h"
+#include "tsr/vision/prefilter.h"
 #include "tsr/vision/quantise.h"
 #include "workbench.h"
 
@@ -25,6 +27,16 @@ static uint8_t gray_coded[TSR_GRAY_ENCODED_LEN_MAX(WORKBENCH_WIDTH_MAX, WORKBENC
 static uint8_t gray_decoded[WORKBENCH_PIXELS_MAX];
 static uint16_t map_decoded[WORKBENCH_PIXELS_MAX];
 static uint16_t map_whole[WORKBENCH_PIXELS_MAX];
+static struct tsr_view_encoder view_encoder;
+static struct tsr_view_decoder view_decoder;
+static uint16_t view_scratch[TSR_VIEW_SCRATCH_LEN(WORKBENCH_WIDTH_MAX) / 2u + 1u];
+static uint8_t view_filtered[WORKBENCH_PIXELS_MAX];
+static uint8_t view_coded[TSR_VIEW_ENCODED_LEN_MAX(WORKBENCH_WIDTH_MAX, WORKBENCH_HEIGHT_MAX)];
+static uint8_t view_of_lead[WORKBENCH_PIXELS_MAX];
+static uint8_t view_tiles[TSR_VIEW_TILE_COUNT(WORKBENCH_WIDTH_MAX, WORKBENCH_HEIGHT_MAX)];
+static uint8_t view_packed[2][TSR_VIEW_HELD_LEN(WORKBENCH_WIDTH_MAX, WORKBENCH_HEIGHT_MAX)];
+static struct tsr_view_held view_held[2] = {{.packed = view_packed[0], .packed_cap = sizeof view_packed[0]},
+                                            {.packed = view_packed[1], .packed_cap = sizeof view_packed[1]}};
 
 static size_t encode_gray(const struct workbench_case *bench, const uint8_t *image, uint8_t near, const char *work)
 {
@@ -62,15 +74,93 @@ void workbench_run_gray(const struct workbench_case *bench, const uint8_t *left,
 {
     size_t pixels = (size_t)bench->width * bench->height;
     size_t len = encode_gray(bench, right, 0, "gray_encode_view");
-    workbench_store("view_coded.out", gray_coded, len);
+    workbench_store("gray_coded.out", gray_coded, len);
     decode_gray(bench, len, "gray_decode_view");
     workbench_expect(memcmp(gray_decoded, right, pixels) == 0, "a view is lossless");
-    workbench_store("view_decoded.out", gray_decoded, pixels);
+    workbench_store("gray_decoded.out", gray_decoded, pixels);
 
     len = encode_gray(bench, left, REFERENCE_NEAR, "gray_encode_reference");
     workbench_store("reference_coded.out", gray_coded, len);
     decode_gray(bench, len, "gray_decode_reference");
     workbench_store("reference_decoded.out", gray_decoded, pixels);
+}
+
+static void prefilter_view(const struct workbench_case *bench, const uint8_t *right)
+{
+    struct tsr_gray frame = {view_filtered, bench->width, bench->height, bench->width};
+    struct tsr_prefilter filter;
+    memcpy(view_filtered, right, (size_t)bench->width * bench->height);
+    workbench_begin();
+    enum tsr_status status =
+        tsr_prefilter_start(&filter, frame, TSR_VIEW_CAP_MAX, (uint8_t *)view_scratch, sizeof view_scratch);
+    while (status >= TSR_OK && tsr_prefilter_run(&filter, ROWS_PER_STEP) == TSR_AGAIN) {
+    }
+    workbench_end("view_prefilter", (size_t)bench->width * bench->height);
+    workbench_expect(status == TSR_OK, "view prefilter");
+}
+
+static size_t encode_view(const struct workbench_case *bench, const struct tsr_view_info *info, const char *work)
+{
+    size_t len = 0;
+    workbench_begin();
+    enum tsr_status status = tsr_view_encode_start(&view_encoder, info, &view_held[0], view_tiles, view_coded,
+                                                   sizeof view_coded, (uint8_t *)view_scratch, sizeof view_scratch);
+    for (unsigned row = 0; row < bench->height && status >= TSR_OK; row += ROWS_PER_STEP) {
+        status = tsr_view_encode_rows(&view_encoder, view_filtered + (size_t)row * bench->width, bench->width,
+                                      ROWS_PER_STEP);
+    }
+    if (status == TSR_OK) {
+        status = tsr_view_encode_finish(&view_encoder, &len);
+    }
+    workbench_end(work, (size_t)bench->width * bench->height);
+    workbench_expect(status == TSR_OK, work);
+    return len;
+}
+
+static void decode_view(const struct workbench_case *bench, size_t len, const char *work)
+{
+    struct tsr_view_info info;
+    workbench_begin();
+    enum tsr_status status = tsr_view_decode_start(&view_decoder, view_coded, len, &view_held[1],
+                                                   (uint8_t *)view_scratch, sizeof view_scratch, &info);
+    for (unsigned row = 0; row < bench->height && status >= TSR_OK; row += ROWS_PER_STEP) {
+        status =
+            tsr_view_decode_rows(&view_decoder, gray_decoded + (size_t)row * bench->width, bench->width, ROWS_PER_STEP);
+    }
+    workbench_end(work, (size_t)bench->width * bench->height);
+    workbench_expect(status == TSR_OK && view_held[0].check == view_held[1].check, work);
+}
+
+/* On its own, exact and coarse, then a third of it against what is held: the left view stands for what has changed. */
+const uint8_t *workbench_run_view(const struct workbench_case *bench, const uint8_t *left, const uint8_t *right)
+{
+    size_t pixels = (size_t)bench->width * bench->height;
+    struct tsr_view_info info = {.width = bench->width, .height = bench->height, .cap = TSR_VIEW_CAP_MAX};
+    prefilter_view(bench, right);
+    size_t len = encode_view(bench, &info, "view_encode_exact");
+    decode_view(bench, len, "view_decode_exact");
+    workbench_expect(memcmp(gray_decoded, view_filtered, pixels) == 0, "an exact view is lossless");
+    workbench_store("view_exact.out", view_coded, len);
+    info.coarse = true;
+    len = encode_view(bench, &info, "view_encode");
+    workbench_store("view_coded.out", view_coded, len);
+    decode_view(bench, len, "view_decode");
+    memcpy(view_of_lead, gray_decoded, pixels);
+
+    prefilter_view(bench, left);
+    info.against_held = true;
+    workbench_begin();
+    struct tsr_view_change change = {.tiles = view_tiles, .tiles_cap = sizeof view_tiles};
+    enum tsr_status status = tsr_view_compare(&view_held[0], view_filtered, bench->width, 0, bench->height, &change);
+    change.stronger = change.weaker = 0; /* tiles are to be kept */
+    (void)tsr_view_choose(&change, TSR_VIEW_TILE_COUNT(bench->width, bench->height), 0);
+    workbench_end("view_compare", pixels);
+    workbench_expect(status == TSR_OK, "view compare");
+    len = encode_view(bench, &info, "view_encode_next");
+    workbench_store("view_next.out", view_coded, len);
+    decode_view(bench, len, "view_decode_next");
+    workbench_store("view_decoded.out", gray_decoded, pixels);
+    return view_of_lead;
 }
 
 /* There and back at a step; the coded map stays in coded. */

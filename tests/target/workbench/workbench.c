@@ -199,6 +199,30 @@ static void run_compare(const struct workbench_case *bench, size_t pixels)
     workbench_store("similarity.out", found, sizeof found);
 }
 
+/* The map that a lead makes of its wing's view, as the sink gets it. */
+static void run_lead(const struct workbench_case *bench, size_t pixels, const uint8_t *seen)
+{
+    const struct tsr_match_config config = {.width = bench->width,
+                                            .height = bench->height,
+                                            .disparities = bench->disparities,
+                                            .right_is_prefiltered = true};
+    struct tsr_gray left_view = tsr_match_pair_left(pair, &config);
+    struct tsr_gray right_view = tsr_match_pair_right(pair, &config);
+    place_view(left_view, left);
+    place_view(right_view, seen);
+    uint16_t *map = tsr_match_pair_map(pair);
+    struct tsr_match match;
+    struct tsr_median median;
+    workbench_expect(
+        tsr_match_start(&match, &config, left_view, right_view, map, pixels, scratch, sizeof scratch) == TSR_OK &&
+            tsr_match_run(&match, UINT16_MAX) == TSR_OK &&
+            tsr_median_start(&median, bench->width, bench->height, map, pixels, scratch, sizeof scratch) == TSR_OK &&
+            tsr_median_run(&median, UINT16_MAX) == TSR_OK &&
+            tsr_quantise(map, pixels, STEP_LOG2, bench->disparities) == TSR_OK,
+        "a lead's map");
+    workbench_store("lead_map.out", map, pixels * sizeof *map);
+}
+
 void workbench_run(const struct workbench_case *bench)
 {
     size_t pixels = (size_t)bench->width * bench->height;
@@ -210,11 +234,13 @@ void workbench_run(const struct workbench_case *bench)
     workbench_load("right.gray", right, pixels);
     run_change(bench, pixels);
     workbench_run_gray(bench, left, right);
+    const uint8_t *seen = workbench_run_view(bench, left, right);
     workbench_run_rectify(bench, left);
     run_match(bench, pixels);
     run_compare(bench, pixels);
     size_t coded_len = workbench_run_map(bench, tsr_match_pair_map(pair), coded, sizeof coded);
     workbench_run_seals(coded, coded_len);
     run_other_modes(bench, pixels);
+    run_lead(bench, pixels, seen);
     workbench_store("work.txt", work_lines, work_lines_len);
 }

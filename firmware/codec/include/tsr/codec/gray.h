@@ -38,11 +38,16 @@
 #define TSR_GRAY_FORMAT_VERSION 1
 #define TSR_GRAY_HEADER_LEN 6
 #define TSR_GRAY_NEAR_MAX 7
+/* In place of a near: 0 where the image is flat, 1, 2 and 4 where it is busy, by the class of local activity
+ * (docs/codec.md, 3.2). For views to be matched with census descriptors: a third smaller than lossless, .004 of a map's
+ * correct pixels lost, where near 1 everywhere loses .012 to .028 (docs/codec.md, 3.6). */
+#define TSR_GRAY_NEAR_BY_ACTIVITY 8
+#define TSR_GRAY_NEAR_BY_ACTIVITY_MAX 4
 
 struct tsr_gray_info {
     uint16_t width;  /* 1 .. TSR_IMAGE_WIDTH_MAX */
     uint16_t height; /* 1 .. TSR_IMAGE_HEIGHT_MAX */
-    uint8_t near;    /* largest error of a decoded pixel, gray levels, 0 .. 7; 0 for views that will be matched */
+    uint8_t near;    /* largest error of a decoded pixel, gray levels, 0 .. 7, or TSR_GRAY_NEAR_BY_ACTIVITY */
 };
 
 /* Bytes of the scratch rows. */
@@ -54,6 +59,9 @@ struct tsr_gray_info {
 /* The longest coded image of this shape, whatever its content: for static buffers. */
 #define TSR_GRAY_ENCODED_LEN_MAX(width, height) ((size_t)(width) * (height) + TSR_GRAY_HEADER_LEN + TSR_GRAY_EXCESS_LEN)
 
+/* Classes of local activity. */
+#define TSR_GRAY_ENERGY_COUNT 9
+
 /* Number of adaptive bits of the model. */
 #define TSR_GRAY_CONTEXT_COUNT 243
 
@@ -61,8 +69,9 @@ struct tsr_gray_info {
 struct tsr_gray_model {
     struct tsr_gray_info info;
     uint8_t *scratch;
-    uint16_t row;          /* next row */
-    uint32_t allowed_bits; /* spent more: store literally */
+    uint16_t row;                         /* next row */
+    uint8_t nears[TSR_GRAY_ENERGY_COUNT]; /* of a pixel, by its class */
+    uint32_t allowed_bits;                /* spent more: store literally */
     struct tsr_range_bit contexts[TSR_GRAY_CONTEXT_COUNT];
 };
 

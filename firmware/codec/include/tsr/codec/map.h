@@ -183,7 +183,7 @@ enum tsr_status tsr_map_read_info(const uint8_t *bytes, size_t len, struct tsr_m
  *   reference   the map that info.reference_id names, or NULL; not used if the map was coded alone
  *   info        out, filled
  *
- * Returns TSR_OK; TSR_ERR_REFERENCE if the map needs a reference and this is none or another;
+ * Returns TSR_OK; TSR_ERR_NOREF if the map needs a reference and this is none or another;
  * TSR_ERR_SIZE if its stride is < width; TSR_ERR_NOBUF if scratch_cap <
  * TSR_MAP_SCRATCH_COUNT(info.width); else as tsr_map_read_info. On error
  * decoder, scratch and info are untouched.

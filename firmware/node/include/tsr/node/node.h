@@ -63,7 +63,8 @@ enum tsr_node_phase {
     TSR_PHASE_REFERENCE, /* coding the reference image */
     TSR_PHASE_MATCHING,
     TSR_PHASE_MEDIAN,
-    TSR_PHASE_COMPARING, /* with the last map the sink has */
+    TSR_PHASE_COMPARING, /* with the last map the sink has; a wing: with the last view the lead has */
+    TSR_PHASE_FILTERING, /* a wing: prefiltering its view */
     TSR_PHASE_ENCODING,  /* map, or view on a wing */
     TSR_PHASE_SEALING,
     TSR_PHASE_SENDING,
@@ -78,7 +79,8 @@ enum tsr_work_kind {
     TSR_WORK_MEDIAN,           /* pixels */
     TSR_WORK_COMPARE,          /* pixels, quantised and compared */
     TSR_WORK_MAP_ENCODE,       /* pixels */
-    TSR_WORK_VIEW_ENCODE,      /* pixels, lossless */
+    TSR_WORK_VIEW_FILTER,      /* pixels, once for prefiltering and once for comparing with the held view */
+    TSR_WORK_VIEW_ENCODE,      /* pixels */
     TSR_WORK_REFERENCE_ENCODE, /* pixels, near-lossless */
     TSR_WORK_VIEW_DECODE,      /* pixels */
     TSR_WORK_SEAL,             /* bytes sealed or opened, messages and frames */
@@ -103,7 +105,7 @@ struct tsr_node_config {
     /* Camera roles; width and height of all three agree. */
     uint32_t watch_period_us;
     struct tsr_change_config change;
-    struct tsr_match_config match; /* of a SAD mode */
+    struct tsr_match_config match; /* of a SAD mode; lead and wing of a pair have the same */
     struct tsr_similarity_config similarity;
     int16_t d0_q4;          /* disparity offset of the pair, px, Q12.4; carried in the map */
     uint8_t step_log2;      /* map's step 2^k / 16 px, 0..4 */
@@ -129,7 +131,7 @@ struct tsr_node_counters {
     uint32_t captures_failed; /* camera error, wing not reached, view not received */
     uint32_t wakes_sent;      /* WAKE frames, repetitions included */
     uint32_t views_sent;      /* wing: accepted by the lead */
-    uint32_t views_lost;      /* wing: given up or refused */
+    uint32_t views_lost;      /* wing: given up or refused; the next one is sent on its own */
     uint32_t view_bytes;      /* wing: sealed, sent once */
     uint32_t maps_made;
     uint32_t maps_withheld;      /* similar to the last one the sink has */
@@ -159,11 +161,12 @@ struct tsr_node_outcome {
 /* Where a node's memory goes: see docs/memory.md. Offsets from the arena's
  * start; regions with the same offset overlay each other in time. */
 enum tsr_region {
-    TSR_REGION_PAIR,     /* both frames, then the map over them; the wing's one frame */
-    TSR_REGION_MESSAGE,  /* the message under way, in or out */
-    TSR_REGION_LAST_MAP, /* the last map the sink has committed */
-    TSR_REGION_CHANGE,   /* background model */
-    TSR_REGION_SCRATCH,  /* matcher, median, coders: one at a time */
+    TSR_REGION_PAIR,      /* both frames, then the map over them; the wing's one frame */
+    TSR_REGION_MESSAGE,   /* the message under way, in or out */
+    TSR_REGION_LAST_MAP,  /* the last map the sink has committed */
+    TSR_REGION_CHANGE,    /* background model */
+    TSR_REGION_HELD_VIEW, /* the last view that lead and wing both hold, packed */
+    TSR_REGION_SCRATCH,   /* matcher, median, coders: one at a time */
     TSR_REGION_COUNT
 };
 

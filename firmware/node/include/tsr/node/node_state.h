@@ -9,8 +9,10 @@
 
 #include "tsr/codec/gray.h"
 #include "tsr/codec/map.h"
+#include "tsr/codec/view.h"
 #include "tsr/node/node.h"
 #include "tsr/vision/median.h"
+#include "tsr/vision/prefilter.h"
 #include "tsr/wire/body.h"
 #include "tsr/wire/link.h"
 #include "tsr/wire/message.h"
@@ -73,6 +75,7 @@ struct tsr_node {
     size_t message_len;
     size_t reference_len;
     uint16_t *last_map;
+    struct tsr_view_held held; /* lead, wing: the last view exchanged; on a wing, and accepted or under way */
     uint8_t *scratch;
     size_t scratch_cap;
 
@@ -88,6 +91,8 @@ struct tsr_node {
     size_t sealed; /* bytes already through the cipher */
     struct tsr_ccm ccm;
     union {
+        struct tsr_prefilter prefilter;
+        struct tsr_view_change view_change;
         struct tsr_match match;
         struct tsr_median median;
         struct tsr_similarity similarity;

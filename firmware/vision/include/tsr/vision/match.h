@@ -24,6 +24,7 @@
 #ifndef TSR_VISION_MATCH_H
 #define TSR_VISION_MATCH_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -67,6 +68,8 @@ struct tsr_match_config {
                                    1 .. 127, or off; default 1; others ignore it */
     uint8_t lr_tolerance_px;    /* 1 .. 127, or off; default 1 */
     int16_t search_start_px;    /* s, -(width - disparities) .. width - disparities; default 0 */
+    bool right_is_prefiltered;  /* the right frame holds P_right, as tsr/vision/prefilter.h makes it with the cap of
+                                   tsr_match_prefilter_cap(); SAD and SAD8 only. Values above 2 cap count as 2 cap */
     const struct tsr_match_kernel *kernel; /* kept; default tsr_match_kernel_at(0) */
 };
 
@@ -93,6 +96,10 @@ struct tsr_match {
 /* TSR_OK, or TSR_ERR_ARG with *field (may be null) naming the first bad field
  * ("config" for a null config). *field is a static string. */
 enum tsr_status tsr_match_check(const struct tsr_match_config *config, const char **field);
+
+/* The cap of the prefilter, defaults filled in: P is 0 .. 2 cap. 0 if the config does not check or its mode has none.
+ */
+uint8_t tsr_match_prefilter_cap(const struct tsr_match_config *config);
 
 /* Scratch bytes of the SAD modes, of census and of smooth, from resolved values: column sums, or costs and paths, and
  * rows. The function gives those of any configuration, 0 if it does not check. */
