@@ -1,11 +1,16 @@
 """Decoders of coded disparity maps and gray images, written from docs/codec.md, not from the C.
 
 Section numbers below are those of docs/codec.md. decode_map and decode_gray take the bytes of one message and raise
-FormatError or VersionError where the document says that a decoder stops.
+FormatError or VersionError where the document says that a decoder stops. The trained numbers of maps are read from
+firmware/codec/map_prior.c, which the document names as a part of itself.
 
 SPDX-License-Identifier: Apache-2.0
 """
+import os
+import pathlib
+import re
 
+SOURCE = pathlib.Path(os.environ.get("TSR_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
 INVALID = 0xFFFF
 
 
@@ -18,7 +23,11 @@ class FormatError(Exception):
 
 
 class VersionError(Exception):
-    """A version, mode or prior that version 1 does not have."""
+    """A version, mode or prior that the document does not have."""
+
+
+class NoReferenceError(Exception):
+    """A map coded against a reference, and none or another is at hand."""
 
 
 class RangeDecoder:
@@ -60,6 +69,21 @@ class RangeDecoder:
         self._renormalise()
         return bit
 
+    def fixed_rate_bit(self, cells, i):
+        p = cells[i]
+        bound = (self.range >> 16) * p
+        if self.offset < bound:
+            bit = 1
+            self.range = bound
+            cells[i] = p + ((65536 - p) >> 6)
+        else:
+            bit = 0
+            self.offset -= bound
+            self.range -= bound
+            cells[i] = p - (p >> 6)
+        self._renormalise()
+        return bit
+
     def direct(self, b):
         self.range >>= b
         value = 0
@@ -72,13 +96,17 @@ class RangeDecoder:
         return value
 
     def magnitude(self, c):
+        return self.magnitude_by(lambda i: self.bit(c[i]))
+
+    def magnitude_by(self, bit):
+        """bit(i) decodes one bit with context i of the 23."""
         k = 0
-        while k < 13 and self.bit(c[k]):
+        while k < 13 and bit(k):
             k += 1
         if k < 4:
             return k
         first = {4: 4, 5: 6, 6: 10, 7: 18, 8: 34, 9: 66, 10: 130, 11: 258, 12: 514, 13: 1026}[k]
-        upper = self.bit(c[13 + k - 4])
+        upper = bit(13 + k - 4)
         return first + upper * 2 ** (k - 4) + (self.direct(k - 4) if k > 4 else 0)
 
 
@@ -100,88 +128,153 @@ def klass(value, lasts):
     return len(lasts)
 
 
+def shaped(numbers, *shape):
+    """The next of the iterator `numbers` as nested lists."""
+    if not shape:
+        return next(numbers)
+    return [shaped(numbers, *shape[1:]) for _ in range(shape[0])]
+
+
+def read_map_prior():
+    """2.8: (tables T, start values of the contexts)"""
+    text = (SOURCE / "firmware/codec/map_prior.c").read_text(encoding="utf-8")
+    weights, cells = re.search(r"\.weights = (.*)\.cells = (.*)", text, re.DOTALL).groups()
+    weights, cells = ([int(number) for number in re.findall(r"-?\d+", part)] for part in (weights, cells))
+    if len(weights) != 6 * 8 * 64 or len(cells) != 3 * 466:
+        raise ValueError("map_prior.c is not prior 1")
+    return shaped(iter(weights), 6, 8, 64), shaped(iter(cells), 3, 466)
+
+
 class MapDecoder:
     """Chapter 2."""
 
-    def __init__(self, data):
+    TABLES, CELLS = read_map_prior()
+
+    def __init__(self, data, reference=None, reference_id=None):
         if len(data) < 9:
             raise FormatError
-        if data[0] != 1 or data[1] >> 4 != 0:
+        if data[0] & 15 != 2 or data[0] >> 4 > 1 or data[1] >> 4 != 1:
             raise VersionError
-        self.step_log2 = data[1]
+        self.mode = data[0] >> 4
+        self.step_log2 = data[1] & 7
+        self.near = data[1] >> 3 & 1
         self.disparities = data[2] + 1
         self.width = data[3] | data[4] << 8
         self.height = data[5] | data[6] << 8
         self.d0_q4 = int.from_bytes(data[7:9], "little", signed=True)
-        if (self.step_log2 > 4 or self.disparities > 128 or not 1 <= self.width <= 640
+        header_len = 11 if self.mode else 9
+        if (len(data) < header_len or self.step_log2 > 4 or self.disparities > 128 or not 1 <= self.width <= 640
                 or not 1 <= self.height <= 480):
             raise FormatError
-        self.labels = 1 + ((16 * self.disparities) >> self.step_log2)
-        self.label_bits = (self.labels - 1).bit_length()
-        self.coder = RangeDecoder(data[9:])
-        self.F, self.K, self.I = contexts(24), contexts(38, 16), contexts(16, 6)
-        self.Z, self.S, self.M = contexts(6, 6), contexts(27, 2), contexts(12, 23)
-        self.last = 1 + (self.labels - 1) // 4
+        self.reference_id = data[9] | data[10] << 8 if self.mode else None
+        if self.mode and (reference is None or reference_id != self.reference_id):
+            raise NoReferenceError
+        self.coder = RangeDecoder(data[header_len:])
+        self.labels = (16 * self.disparities) >> self.step_log2
+        self.label_bits = self.labels.bit_length()
+        self.none = self.label_of(INVALID)
+        self.last = self.labels // 4
         self.map = {}
+        self.reference = {(x, y): self.label_of(reference[y][x]) for y in range(self.height)
+                          for x in range(self.width)} if self.mode else {}
+        cells = iter(self.CELLS[2 if self.mode else self.near])
+        self.flat, self.candidate, self.invalid = shaped(cells, 48), shaped(cells, 6, 32), shaped(cells, 16, 6)
+        self.predicted, self.sign = shaped(cells, 6, 6), shaped(cells, 27)
+        self.nearer, self.farther, self.half = shaped(cells, 4, 12), shaped(cells, 9), shaped(cells, 10)
 
-    def at(self, x, y):
-        return self.map.get((x, y), 0)
-
-    @staticmethod
-    def diff(a, b):
-        if a == 0 or b == 0:
-            return 0 if a == b else 16384
-        return abs(a - b)
+    def label_of(self, d_q4):
+        return (d_q4 >> self.step_log2) & 0x7FFF
 
     def pixel(self, x, y, run):
-        at, diff, bit = self.at, self.diff, self.coder.bit
-        W, WW, N, NW, NE = at(x - 1, y), at(x - 2, y), at(x, y - 1), at(x - 1, y - 1), at(x + 1, y - 1)
-        NEE, NN, NNE = at(x + 2, y - 1), at(x, y - 2), at(x + 1, y - 2)
-        gap = klass(diff(W, N), (0, 1, 3, 8, 16383))
-        activity = klass(diff(W, N) + diff(N, NE) + diff(W, NW) + diff(NW, N), (0, 2, 5, 12, 16383))
-        if W and N and NW:
+        """2.3, 2.5 to 2.7"""
+        none, bit = self.none, self.coder.fixed_rate_bit
+
+        def at(dx, dy, labels=self.map):
+            return labels.get((x + dx, y + dy), none)
+
+        def at_reference(dx, dy):
+            return at(dx, dy, self.reference)
+
+        def diff(a, b):
+            return abs(a - b)
+
+        WWW, WW, W = at(-3, 0), at(-2, 0), at(-1, 0)
+        NWW, NW, N, NE, NEE = at(-2, -1), at(-1, -1), at(0, -1), at(1, -1), at(2, -1)
+        NNW, NN, NNE = at(-1, -2), at(0, -2), at(1, -2)
+        gap = klass(diff(W, N), (0, 1, 3, 8, 2047))
+        activity = klass(diff(W, N) + diff(N, NE) + diff(W, NW) + diff(NW, N), (0, 2, 5, 12, 2047))
+        if self.mode:
+            R, RE, RS, RSE = at_reference(0, 0), at_reference(1, 0), at_reference(0, 1), at_reference(1, 1)
+            RW, RN, RNE, RNW = at_reference(-1, 0), at_reference(0, -1), at_reference(1, -1), at_reference(-1, -1)
+            changed = (W != RW) + 2 * (N != RN) + 4 * (NE != RNE) + 8 * (NW != RNW)
+        if self.mode and R != none and (W == RW or N == RN):
+            P = R
+        elif none not in (W, N, NW):
             P = median(W, N, W + N - NW)
         else:
-            P = W or N or NE or NW or self.last
+            P = next((v for v in (W, N, NE, NW) if v != none), self.last)
         # 2.5
-        swap = N != W and NW == W
         asked = []
-        for number, C in enumerate((N if swap else W, W if swap else N, NE, NW, NEE), 1):
-            if C in asked or (number >= 3 and diff(C, P) <= 3):
-                continue
-            if number == 1 and N == NE == NW == WW == NN == W:
-                r = klass(run, (0, 1, 3, 7, 15))
-                context = self.F[(W == 0) + 2 * r + 12 * (NEE == W and NNE == W)]
+        flat = N == NE == NW == WW == NN == W
+        if flat:
+            if self.mode:
+                f = (W == none) + 2 * (R == W) + 4 * (RE == W) + 8 * (RS == W) + 16 * (changed != 0)
             else:
-                m = (NE == C) + 2 * (NW == C) + 4 * (WW == C) + 8 * (NN == C)
-                if len(asked) >= 2 or (len(asked) == 1 and W == N):
-                    g = 26 + gap + 6 * (C == 0)
-                elif W == N:
-                    g = int(C == 0)
-                else:
-                    g = 2 + 12 * len(asked) + 6 * (C == N) + (gap - 1) + (C == 0)
-                context = self.K[g][m]
-            if bit(context):
-                return C
-            asked.append(C)
+                f = (W == none) + 2 * klass(run, (0, 1, 3, 7, 15)) + 12 * (NEE == W) + 24 * (NNE == W)
+            if bit(self.flat, f):
+                return W
+            asked.append(W)
         # 2.6
-        if 0 not in asked:
-            if bit(self.I[(NE == 0) + 2 * (NW == 0) + 4 * (WW == 0) + 8 * (NN == 0)][gap]):
-                return 0
+        candidates = []
+        if not flat and N != W and NW == W:
+            candidates += [(N, 1), (W, 4)]
+        elif not flat:
+            candidates += [(W, 0 if W == N else 2), (N, 3)]
+        if self.mode:
+            candidates.append((R, 5))
+        if not flat:
+            candidates += [(C, 5) for C in (NE, NW, NEE) if diff(C, P) > 3]
+        for C, kind in candidates:
+            if C in asked:
+                continue
+            asked.append(C)
+
+            def pair(a, b, C=C):
+                return min(max(a - C, -4), 3) % 8 + 8 * (min(max(b - C, -4), 3) % 8)
+
+            T = self.TABLES[kind]
+            total = (T[0][pair(NE, NEE)] + T[1][pair(NWW, NW)] + T[2][pair(NN, NNE)] + T[3][pair(WWW, WW)]
+                     + T[4][pair(N if C == W else W, NNW)])
+            if self.mode:
+                total += T[5][pair(R, RE)] + T[6][pair(RS, RSE)] + T[7][changed + 16 * (R == C) + 32 * (RE == R)]
+            if bit(self.candidate[kind], min(max((total + 2) // 4 + 16, 0), 31)):
+                return C
+        # 2.7
+        if none not in asked:
+            if bit(self.invalid[(NE == none) + 2 * (NW == none) + 4 * (WW == none) + 8 * (NN == none)], gap):
+                return none
         if P not in asked:
-            if bit(self.Z[gap][activity]):
+            if bit(self.predicted[gap], activity):
                 return P
 
         def side(v):
-            return 1 if v == 0 or v == P else 2 if v > P else 0
+            return 1 if v in (none, P) else 2 if v > P else 0
 
-        e = int(P in asked)
-        below = bit(self.S[side(W) + 3 * side(N) + 9 * side(NE)][e])
-        magnitude = self.coder.magnitude(self.M[2 * activity + e])
+        below = bit(self.sign, side(W) + 3 * side(N) + 9 * side(NE))
+        c = 2 * activity + (P in asked)
+        magnitude = self.coder.magnitude_by(lambda i: bit(self.nearer[i], c) if i < 4 else bit(self.farther, i - 4)
+                                            if i < 13 else bit(self.half, i - 13))
         label = P - 1 - magnitude if below else P + 1 + magnitude
-        if not 1 <= label < self.labels:
+        if not 0 <= label < self.labels:
             raise FormatError
         return label
+
+    def literal(self):
+        """2.4"""
+        label = self.coder.direct(self.label_bits)
+        if label > self.labels:
+            raise FormatError
+        return self.none if label == self.labels else label
 
     def decode(self):
         rows = []
@@ -189,20 +282,17 @@ class MapDecoder:
         for y in range(self.height):
             run = 0
             for x in range(self.width):
+                if x % 16 == 0:
+                    literal = 8 * self.coder.spent > allowed
+                    allowed += min(16, self.width - x) * self.label_bits
                 try:
-                    if 8 * self.coder.spent > allowed:
-                        label = self.coder.direct(self.label_bits)
-                        if label >= self.labels:
-                            raise FormatError
-                    else:
-                        label = self.pixel(x, y, run)
+                    label = self.literal() if literal else self.pixel(x, y, run)
                 except FormatError:
                     raise FormatError(rows) from None
-                allowed += self.label_bits
                 self.map[x, y] = label
-                run = run + 1 if label == self.at(x - 1, y) else 0
-                self.last = label or self.last
-            rows.append([INVALID if label == 0 else (label - 1) << self.step_log2
+                run = run + 1 if label == self.map.get((x - 1, y), self.none) else 0
+                self.last = label if label != self.none else self.last
+            rows.append([INVALID if label == self.none else label << self.step_log2
                          for label in (self.map[x, y] for x in range(self.width))])
         return rows
 
@@ -263,9 +353,9 @@ class GrayDecoder:
         return rows
 
 
-def decode_map(data):
-    """(decoder with the header's fields, rows of UQ12.4 disparities)"""
-    decoder = MapDecoder(data)
+def decode_map(data, reference=None, reference_id=None):
+    """(decoder with the header's fields, rows of UQ12.4 disparities); reference: such rows of the same shape"""
+    decoder = MapDecoder(data, reference, reference_id)
     return decoder, decoder.decode()
 
 

@@ -1,7 +1,8 @@
 """The C codec against the decoders of tests/support/codec_decoder.py, written from docs/codec.md.
 
-The C encodes pictures of every kind; the Python must decode the same picture, and both must say the same about damaged
-and random bytes, row for row. SEED replays a run: SEED=n python3 tests/vectors/test_codec_decoder.py
+The C encodes pictures of every kind, maps also near-lossless and against references; the Python must decode the same
+picture, and both must say the same about damaged bytes, row for row. SEED replays a run:
+SEED=n python3 tests/vectors/test_codec_decoder.py
 
 SPDX-License-Identifier: Apache-2.0
 """
@@ -21,7 +22,8 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(SOURCE / "tests" / "support"))
 import codec_decoder as reference  # noqa: E402
 
-OK, AGAIN, ERR_FORMAT, ERR_VERSION = 0, 1, -4, -5
+OK, AGAIN, ERR_FORMAT, ERR_VERSION, ERR_REFERENCE = 0, 1, -4, -5, -13
+REFERENCES = (None, "equal", "shifted", "changed", "noise", "other", "invalid")
 STATE_LEN = 16384  # more than any coder's state
 
 
@@ -35,7 +37,16 @@ def load_library():
 
 class MapInfo(ctypes.Structure):
     _fields_ = [("width", ctypes.c_uint16), ("height", ctypes.c_uint16), ("disparities", ctypes.c_uint16),
-                ("step_log2", ctypes.c_uint8), ("d0_q4", ctypes.c_int16)]
+                ("step_log2", ctypes.c_uint8), ("near", ctypes.c_uint8), ("d0_q4", ctypes.c_int16),
+                ("has_reference", ctypes.c_bool), ("reference_id", ctypes.c_uint16)]
+
+
+class MapReference(ctypes.Structure):
+    """Of an array whose rows may lie apart; the array must outlive it."""
+    _fields_ = [("map", ctypes.c_void_p), ("stride", ctypes.c_size_t), ("id", ctypes.c_uint16)]
+
+    def __init__(self, array, name):
+        super().__init__(array.ctypes.data, array.strides[0] // array.itemsize, name)
 
 
 class GrayInfo(ctypes.Structure):
@@ -51,13 +62,19 @@ def pointer(array):
     return array.ctypes.data_as(ctypes.c_void_p)
 
 
-def encode(kind, info, pixels):
+def reference_argument(kind, against):
+    """The argument that only maps have."""
+    return () if kind == "gray" else (None,) if against is None else (ctypes.byref(against),)
+
+
+def encode(kind, info, pixels, against=None):
     state = np.zeros(STATE_LEN, np.uint8)
     out = np.zeros(getattr(LIB, f"tsr_{kind}_encoded_len_max")(ctypes.byref(info)), np.uint8)
-    scratch = np.zeros(3 * (info.width + 4), pixels.dtype)
+    scratch = np.zeros(3 * (info.width + 5), pixels.dtype)
     length = ctypes.c_size_t(0)
     size = ctypes.c_size_t
-    status = getattr(LIB, f"tsr_{kind}_encode_start")(pointer(state), ctypes.byref(info), pointer(out), size(out.size),
+    status = getattr(LIB, f"tsr_{kind}_encode_start")(pointer(state), ctypes.byref(info),
+                                                      *reference_argument(kind, against), pointer(out), size(out.size),
                                                       pointer(scratch), size(scratch.size))
     assert status == OK, status
     status = getattr(LIB, f"tsr_{kind}_encode_rows")(pointer(state), pointer(pixels), size(info.width), info.height)
@@ -67,13 +84,14 @@ def encode(kind, info, pixels):
     return out[:length.value].tobytes()
 
 
-def decode(kind, data, dtype, info):
+def decode(kind, data, dtype, info, against=None):
     """(status, rows decoded before a status that is an error)"""
     state = np.zeros(STATE_LEN, np.uint8)
     data = np.frombuffer(data, np.uint8) if data else np.zeros(1, np.uint8)[:0]
-    scratch = np.zeros(3 * 644, dtype)
+    scratch = np.zeros(3 * 645, dtype)
     size = ctypes.c_size_t
-    status = getattr(LIB, f"tsr_{kind}_decode_start")(pointer(state), pointer(data), size(data.size), pointer(scratch),
+    status = getattr(LIB, f"tsr_{kind}_decode_start")(pointer(state), pointer(data), size(data.size),
+                                                      *reference_argument(kind, against), pointer(scratch),
                                                       size(scratch.size), ctypes.byref(info))
     rows = []
     if status != OK:
@@ -106,6 +124,20 @@ def make_map(rng, kind, width, height, disparities, step_log2):
     return result
 
 
+def make_reference(rng, kind, pixels, info):
+    """A map of the same shape, its rows apart; "other" has another step and other disparities."""
+    height, width = pixels.shape
+    noise = make_map(rng, "noise", width, height, info.disparities, info.step_log2)
+    result = np.zeros((height, width + int(rng.integers(0, 4))), np.uint16)[:, :width]
+    result[:] = {"equal": pixels,
+                 "shifted": np.roll(pixels, (int(rng.integers(0, 2)), 1), (0, 1)),
+                 "changed": np.where(rng.random((height, width)) < 0.1, noise, pixels),
+                 "noise": noise,
+                 "other": make_map(rng, "noise", width, height, 128, 0),
+                 "invalid": reference.INVALID}[kind]
+    return result
+
+
 def make_gray(rng, kind, width, height):
     y, x = np.mgrid[0:height, 0:width]
     if kind == "noise":
@@ -118,20 +150,61 @@ def make_gray(rng, kind, width, height):
     return np.clip(wave, 0, 255).astype(np.uint8)
 
 
-def check_damaged(rng, kind, data, dtype, make_info, decode_reference, header_len):
+def check_map(rng, kind, reference_kind, info, counts):
+    where = (kind, reference_kind, [getattr(info, field) for field, _ in info._fields_])
+    pixels = make_map(rng, kind, info.width, info.height, info.disparities, info.step_log2)
+    name = int(rng.integers(0, 65536))
+    against = rows_against = None
+    if reference_kind is not None:
+        array = make_reference(rng, reference_kind, pixels, info)
+        against, rows_against = MapReference(array, name), array.tolist()
+    data = encode("map", info, pixels, against)
+
+    header, rows = reference.decode_map(data, rows_against, name)
+    decoded = np.array(rows, int)
+    assert ((decoded == reference.INVALID) == (pixels == reference.INVALID)).all(), where
+    assert np.abs(decoded - pixels).max() <= info.near << info.step_log2, where
+    for field in ("disparities", "step_log2", "near", "d0_q4"):
+        assert getattr(header, field) == getattr(info, field), (where, field)
+    assert header.reference_id == (None if against is None else name), where
+    found = MapInfo()
+    assert decode("map", data, np.uint16, found, against) == (OK, rows), where
+    assert (found.near, found.has_reference) == (info.near, against is not None), where
+    if against is not None:
+        assert found.reference_id == name, where
+        for other, other_rows in ((None, None), (MapReference(array, name ^ 1), rows_against)):
+            assert check_bytes("map", data, np.uint16, MapInfo(), other,
+                               lambda bytes_, rows_=other_rows: reference.decode_map(bytes_, rows_, name ^ 1)), where
+    counts["map"] += 1
+    # Not the bytes of the shape: a larger map takes long.
+    counts["refused"] += check_damaged(rng, "map", data, np.uint16, MapInfo,
+                                       lambda bytes_: reference.decode_map(bytes_, rows_against, name),
+                                       9 if against is None else 11, (0, 1, 2, 7, 8, 9, 10), against)
+    counts["damaged"] += 1
+
+
+def check_damaged(rng, kind, data, dtype, make_info, decode_reference, header_len, header_bytes=(0,), against=None):
     damaged = bytearray(data)
     for _ in range(int(rng.integers(1, 4))):
-        damaged[int(rng.integers(header_len, len(damaged))) if len(damaged) > header_len else 0] ^= int(
-            rng.integers(1, 256))
+        in_header = len(damaged) == header_len or rng.random() < 0.1
+        at = int(rng.choice(header_bytes) if in_header else rng.integers(header_len, len(damaged)))
+        damaged[min(at, len(damaged) - 1)] ^= int(rng.integers(1, 256))
     damaged = bytes(damaged[:int(rng.integers(0, len(damaged) + 1))]) if rng.random() < 0.3 else bytes(damaged)
-    status, rows = decode(kind, damaged, dtype, make_info())
+    return check_bytes(kind, damaged, dtype, make_info(), against, decode_reference)
+
+
+def check_bytes(kind, data, dtype, info, against, decode_reference):
+    """Whether both refuse the bytes; that they say the same."""
+    status, rows = decode(kind, data, dtype, info, against)
     try:
-        _, expected = decode_reference(damaged)
+        _, expected = decode_reference(data)
         expected_status = OK
     except reference.FormatError as error:
         expected, expected_status = list(error.rows), ERR_FORMAT
     except reference.VersionError:
         expected, expected_status = [], ERR_VERSION
+    except reference.NoReferenceError:
+        expected, expected_status = [], ERR_REFERENCE
     assert status == expected_status, (kind, status, expected_status)
     assert rows == expected, kind
     return status != OK
@@ -143,19 +216,16 @@ def main():
     rng = np.random.default_rng(seed)
     counts = {"map": 0, "gray": 0, "damaged": 0, "refused": 0}
     sizes = [(1, 1), (1, 9), (2, 3), (3, 2), (5, 7), (17, 11), (64, 24)]
+    variants = [(near, reference_kind) for near in (0, 1) for reference_kind in REFERENCES]
     for step_log2 in range(5):
         for kind in ("noise", "slope", "blocks", "zero", "empty"):
-            for width, height in sizes + ([(160, 120)] if step_log2 in (0, 2) else []):
+            maps = [(size, variant) for size in sizes[:-1] for variant in variants]
+            maps += [(size, variants[int(rng.integers(len(variants)))])
+                     for size in 4 * sizes[-1:] + ([(160, 120)] if step_log2 in (0, 2) else [])]
+            for (width, height), (near, reference_kind) in maps:
                 disparities = int(rng.choice([1, 2, 16, 31, 48, 64, 128]))
-                info = MapInfo(width, height, disparities, step_log2, int(rng.integers(-32768, 32768)))
-                pixels = make_map(rng, kind, width, height, disparities, step_log2)
-                data = encode("map", info, pixels)
-                header, rows = reference.decode_map(data)
-                assert rows == pixels.tolist(), (kind, width, height, disparities, step_log2)
-                assert (header.disparities, header.step_log2, header.d0_q4) == (disparities, step_log2, info.d0_q4)
-                counts["map"] += 1
-                counts["refused"] += check_damaged(rng, "map", data, np.uint16, MapInfo, reference.decode_map, 9)
-                counts["damaged"] += 1
+                info = MapInfo(width, height, disparities, step_log2, near, int(rng.integers(-32768, 32768)))
+                check_map(rng, kind, reference_kind, info, counts)
     for near in range(9):
         for kind in ("noise", "steps", "flat", "wave"):
             for width, height in sizes + ([(160, 120)] if near in (0, 2, 8) else []):
