@@ -33,6 +33,15 @@ void tsr_range_bits_reset(struct tsr_range_bit *bits, size_t count)
     }
 }
 
+void tsr_range_bits_load(struct tsr_range_bit *bits, const uint16_t *prior, size_t count)
+{
+    static const uint8_t counts[16] = {0, 1, 2, 3, 4, 6, 8, 11, 15, 20, 26, 33, 40, 48, 54, 60};
+    for (size_t i = 0; i < count; i++) {
+        bits[i].p_one_q16 = prior[i] & 0xfff0u;
+        bits[i].count = counts[prior[i] & 15u];
+    }
+}
+
 static void learn(struct tsr_range_bit *context, unsigned bit)
 {
     const uint32_t rate_q16 = rates_q16[context->count];

@@ -59,6 +59,14 @@ struct tsr_range_decoder {
 /* Forget what count contexts have learned: P = 1/2. */
 void tsr_range_bits_reset(struct tsr_range_bit *bits, size_t count);
 
+/*
+ * Start count contexts from what was learned before.
+ *
+ *   prior   [count], bits 15..4 P(1) in 1/4096, never 0; bits 3..0 the index of the count of bits seen in
+ *           {0, 1, 2, 3, 4, 6, 8, 11, 15, 20, 26, 33, 40, 48, 54, 60}: how firmly the prior is held
+ */
+void tsr_range_bits_load(struct tsr_range_bit *bits, const uint16_t *prior, size_t count);
+
 /* Start a stream in out[cap]; cap may be 0. */
 void tsr_range_encode_start(struct tsr_range_encoder *encoder, uint8_t *out, size_t cap);
 
