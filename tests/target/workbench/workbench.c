@@ -211,6 +211,7 @@ void workbench_run(const struct workbench_case *bench)
     workbench_load("right.gray", right, pixels);
     run_change(bench, pixels);
     workbench_run_gray(bench, left, right);
+    workbench_run_picture(bench, left);
     workbench_run_rectify(bench, left);
     run_match(bench, pixels);
     run_compare(bench, pixels);

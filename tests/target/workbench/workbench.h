@@ -49,6 +49,7 @@ void workbench_run(const struct workbench_case *bench);
 /* refinements.c, codecs.c, rectify.c and seals.c */
 void workbench_run_refinements(const struct workbench_case *bench, const uint16_t *map);
 void workbench_run_gray(const struct workbench_case *bench, const uint8_t *left, const uint8_t *right);
+void workbench_run_picture(const struct workbench_case *bench, const uint8_t *left);
 size_t workbench_run_map(const struct workbench_case *bench, const uint16_t *map, uint8_t *coded, size_t coded_cap);
 void workbench_run_rectify(const struct workbench_case *bench, const uint8_t *view);
 void workbench_run_seals(const uint8_t *text, size_t text_len);
