@@ -11,10 +11,10 @@ static int within(int value, int limit)
     return value < -limit ? -limit : value > limit ? limit : value;
 }
 
-/* A neighbour's pull, in 1/8: an eighth of the difference inside a block, a quarter across its border. */
+/* A neighbour's pull, in 1/8: a quarter of the difference, within the limit. */
 static int pull(int difference, int limit, bool across)
 {
-    return across ? within(2 * difference, 4 * limit) : within(difference, limit);
+    return within(2 * difference, across ? 4 * limit : limit);
 }
 
 void tsr_picture_smooth_row(const struct tsr_picture_model *model, unsigned y, uint8_t *out)
@@ -42,7 +42,7 @@ void tsr_picture_smooth_row(const struct tsr_picture_model *model, unsigned y, u
         if (y < last_row) {
             sum += pull(here[x + rows.stride] - pixel, limit, in_block == TSR_PICTURE_BLOCK - 1u);
         }
-        /* The pulls' weights sum to 3/4 at most, so this lies between the five pixels. */
+        /* The pulls' weights sum to 1 at most, so this lies between the five pixels. */
         out[x] = (uint8_t)(pixel + (sum >> 3));
     }
 }

@@ -14,6 +14,9 @@
 #define LLVMFuzzerTestOneInput fuzz_gray_one_input
 #include "fuzz_codec_gray.c"
 #undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_picture_one_input
+#include "fuzz_codec_picture.c"
+#undef LLVMFuzzerTestOneInput
 
 #include "corpus_replay.h"
 
@@ -30,6 +33,10 @@ static void test_gray_corpus(void)
 {
     corpus_replay(fuzz_gray_one_input, "corpus_codec_gray", MUTATIONS);
 }
+static void test_picture_corpus(void)
+{
+    corpus_replay(fuzz_picture_one_input, "corpus_codec_picture", MUTATIONS);
+}
 
 int main(int argc, char **argv)
 {
@@ -37,5 +44,6 @@ int main(int argc, char **argv)
     UNITY_BEGIN();
     RUN_TEST(test_map_corpus);
     RUN_TEST(test_gray_corpus);
+    RUN_TEST(test_picture_corpus);
     return UNITY_END();
 }
