@@ -15,7 +15,7 @@
 #include "picture_block.h"
 #include "tsr/base/bytes.h"
 
-#define RATE_CHANGE_MAX 3
+#define RATE_CHANGE_MAX 4
 
 /* docs/codec.md, 5.10: a block takes at most 64 (16 * 11.01 + 10) + 20 * 11.01 + 3 bits, 1516 bytes, a band 4 bytes
  * more; direct bits lose less than 2^-11 of a bit each by rounding. */
@@ -83,7 +83,7 @@ static unsigned bands_of(const struct tsr_picture_model *model)
 }
 
 /* How the step shall change so that the bytes left last for the bands left, each as long as those before. */
-static int steer(const struct tsr_picture_encoder *encoder)
+static int steer(struct tsr_picture_encoder *encoder)
 {
     const unsigned bands_left = bands_of(&encoder->model) - encoder->model.band;
     if (encoder->target_len == 0 || encoder->model.band == 0) {
@@ -102,6 +102,7 @@ static int steer(const struct tsr_picture_encoder *encoder)
         less += less / 16u + 1u;
         change--;
     }
+    encoder->band_len = change > 0 ? more : less; /* as it would have been with the new step */
     return change;
 }
 

@@ -14,7 +14,7 @@
  * a block of high activity takes up to 4 half octaves more. Each step of k is
  * worth 4 to 7 per cent of the bytes; 32 to 36 gives an SSIM of about 0.9.
  *
- * Rate: with target_len, the step changes by at most 3 a band of 8 rows so that
+ * Rate: with target_len, the step changes by at most 4 a band of 8 rows so that
  * the bytes left last for the bands left; docs/codec.md, 5.9, says how close
  * that comes. It steers and does not bound: out_cap bounds.
  *
