@@ -44,60 +44,61 @@ uint32_t tsr_picture_step_q6(unsigned index)
     return (uint32_t)octave[index % 8u] << (index / 8u);
 }
 
-/* One dimension of the forward transform, H.264's reference. */
-static void transform(const int32_t in[SIZE], int32_t *out, size_t apart)
+/* Each of count rows of 8 becomes a column of out: two passes transform a block. H.264's reference. */
+static void transform(const int32_t *in, int32_t *out, size_t count)
 {
-    const int32_t s0 = in[0] + in[7], s1 = in[1] + in[6], s2 = in[2] + in[5], s3 = in[3] + in[4];
-    const int32_t d0 = in[0] - in[7], d1 = in[1] - in[6], d2 = in[2] - in[5], d3 = in[3] - in[4];
-    const int32_t a0 = s0 + s3, a1 = s1 + s2, a2 = s0 - s3, a3 = s1 - s2;
-    const int32_t b0 = d1 + d2 + d0 + (d0 >> 1), b1 = d0 - d3 - d2 - (d2 >> 1);
-    const int32_t b2 = d0 + d3 - d1 - (d1 >> 1), b3 = d1 - d2 + d3 + (d3 >> 1);
-    out[0] = a0 + a1;
-    out[apart] = b0 + (b3 >> 2);
-    out[2 * apart] = a2 + (a3 >> 1);
-    out[3 * apart] = b1 + (b2 >> 2);
-    out[4 * apart] = a0 - a1;
-    out[5 * apart] = b2 - (b1 >> 2);
-    out[6 * apart] = (a2 >> 1) - a3;
-    out[7 * apart] = (b0 >> 2) - b3;
+    for (const int32_t *const end = in + SIZE * count; in != end; in += SIZE, out++) {
+        const int32_t s0 = in[0] + in[7], s1 = in[1] + in[6], s2 = in[2] + in[5], s3 = in[3] + in[4];
+        const int32_t d0 = in[0] - in[7], d1 = in[1] - in[6], d2 = in[2] - in[5], d3 = in[3] - in[4];
+        const int32_t a0 = s0 + s3, a1 = s1 + s2, a2 = s0 - s3, a3 = s1 - s2;
+        const int32_t b0 = d1 + d2 + d0 + (d0 >> 1), b1 = d0 - d3 - d2 - (d2 >> 1);
+        const int32_t b2 = d0 + d3 - d1 - (d1 >> 1), b3 = d1 - d2 + d3 + (d3 >> 1);
+        out[0] = a0 + a1;
+        out[SIZE] = b0 + (b3 >> 2);
+        out[2 * SIZE] = a2 + (a3 >> 1);
+        out[3 * SIZE] = b1 + (b2 >> 2);
+        out[4 * SIZE] = a0 - a1;
+        out[5 * SIZE] = b2 - (b1 >> 2);
+        out[6 * SIZE] = (a2 >> 1) - a3;
+        out[7 * SIZE] = (b0 >> 2) - b3;
+    }
 }
 
-/* One dimension of the inverse transform: ITU-T H.264, 8.5.13. */
-static void transform_back(const int32_t in[SIZE], int32_t *out, size_t apart)
+/* The same back: ITU-T H.264, 8.5.13. */
+static void transform_back(const int32_t *in, int32_t *out, size_t count)
 {
-    const int32_t a0 = in[0] + in[4], a1 = in[0] - in[4], a2 = (in[2] >> 1) - in[6], a3 = in[2] + (in[6] >> 1);
-    const int32_t e0 = a0 + a3, e1 = a1 + a2, e2 = a1 - a2, e3 = a0 - a3;
-    const int32_t b0 = in[5] - in[3] - in[7] - (in[7] >> 1), b1 = in[1] + in[7] - in[3] - (in[3] >> 1);
-    const int32_t b2 = in[7] - in[1] + in[5] + (in[5] >> 1), b3 = in[3] + in[5] + in[1] + (in[1] >> 1);
-    const int32_t o0 = b0 + (b3 >> 2), o3 = b3 - (b0 >> 2), o1 = b1 + (b2 >> 2), o2 = (b1 >> 2) - b2;
-    out[0] = e0 + o3;
-    out[apart] = e1 + o2;
-    out[2 * apart] = e2 + o1;
-    out[3 * apart] = e3 + o0;
-    out[4 * apart] = e3 - o0;
-    out[5 * apart] = e2 - o1;
-    out[6 * apart] = e1 - o2;
-    out[7 * apart] = e0 - o3;
+    for (const int32_t *const end = in + SIZE * count; in != end; in += SIZE, out++) {
+        const int32_t a0 = in[0] + in[4], a1 = in[0] - in[4], a2 = (in[2] >> 1) - in[6], a3 = in[2] + (in[6] >> 1);
+        const int32_t e0 = a0 + a3, e1 = a1 + a2, e2 = a1 - a2, e3 = a0 - a3;
+        const int32_t b0 = in[5] - in[3] - in[7] - (in[7] >> 1), b1 = in[1] + in[7] - in[3] - (in[3] >> 1);
+        const int32_t b2 = in[7] - in[1] + in[5] + (in[5] >> 1), b3 = in[3] + in[5] + in[1] + (in[1] >> 1);
+        const int32_t o0 = b0 + (b3 >> 2), o1 = b1 + (b2 >> 2), o2 = (b1 >> 2) - b2, o3 = b3 - (b0 >> 2);
+        out[0] = e0 + o3;
+        out[SIZE] = e1 + o2;
+        out[2 * SIZE] = e2 + o1;
+        out[3 * SIZE] = e3 + o0;
+        out[4 * SIZE] = e3 - o0;
+        out[5 * SIZE] = e2 - o1;
+        out[6 * SIZE] = e1 - o2;
+        out[7 * SIZE] = e0 - o3;
+    }
 }
 
 void tsr_picture_border_of(struct tsr_picture_border *border, const uint8_t *above, const uint8_t *left,
                            size_t left_stride)
 {
-    int32_t pixels[SIZE], made[SIZE];
+    int32_t pixels[2u * SIZE], made[TSR_PICTURE_COEFFICIENTS];
     for (size_t i = 0; i < SIZE; i++) {
         pixels[i] = above[i];
+        pixels[SIZE + i] = left[i * left_stride];
     }
-    transform(pixels, made, 1);
+    transform(pixels, made, 2);
     for (size_t i = 0; i < SIZE; i++) {
-        border->above[i] = (int16_t)((made[i] * inverse_norms[i] + 128) >> 8);
-        pixels[i] = left[i * left_stride];
+        border->above[i] = (int16_t)((made[SIZE * i] * inverse_norms[i] + 128) >> 8);
+        border->left[i] = (int16_t)((made[SIZE * i + 1u] * inverse_norms[i] + 128) >> 8);
     }
-    transform(pixels, made, 1);
-    for (size_t i = 0; i < SIZE; i++) {
-        border->left[i] = (int16_t)((made[i] * inverse_norms[i] + 128) >> 8);
-    }
-    border->above_last = above[SIZE - 1u];
-    border->left_last = left[(SIZE - 1u) * left_stride];
+    border->above_last = (uint8_t)pixels[SIZE - 1u];
+    border->left_last = (uint8_t)pixels[2u * SIZE - 1u];
 }
 
 /* The plane (7 - x) left[y] + (x + 1) above_last + (7 - y) above[x] + (y + 1) left_last, over 16, of which the ramps'
@@ -140,17 +141,14 @@ static void predict(int32_t made[TSR_PICTURE_COEFFICIENTS], const struct tsr_pic
 
 static void transform_block(int32_t made[TSR_PICTURE_COEFFICIENTS], const uint8_t *pixels, size_t stride)
 {
-    int32_t rows[TSR_PICTURE_COEFFICIENTS]; /* transposed: column v of the result is contiguous */
+    int32_t columns[TSR_PICTURE_COEFFICIENTS];
     for (size_t y = 0; y < SIZE; y++) {
-        int32_t in[SIZE];
         for (size_t x = 0; x < SIZE; x++) {
-            in[x] = pixels[y * stride + x];
+            made[SIZE * y + x] = pixels[y * stride + x];
         }
-        transform(in, rows + y, SIZE);
     }
-    for (size_t v = 0; v < SIZE; v++) {
-        transform(rows + SIZE * v, made + v, SIZE);
-    }
+    transform(made, columns, SIZE);
+    transform(columns, made, SIZE);
 }
 
 /* From inverse to forward scale. */
@@ -165,52 +163,48 @@ static int32_t magnitude_of(int32_t value)
 }
 
 /* What predicting this coefficient saves, as a share of its step. */
-static int32_t saving_at(const int32_t *coefficients, const int32_t *predicted, size_t at)
+static int32_t saving(const int32_t *coefficients, int32_t predicted, size_t at)
 {
     const int32_t whole = coefficients[at];
-    const int32_t rest = whole - forward_of(predicted[at], at);
+    const int32_t rest = whole - forward_of(predicted, at);
     return (magnitude_of(whole) - magnitude_of(rest)) * inverse_scales[at];
 }
 
-static int32_t saving_of(const int32_t *coefficients, const int32_t *predicted, unsigned mode)
+/* The mode that saves most; what is saved of the mean is in each of them. */
+static uint8_t choose_mode(const int32_t *coefficients, const struct tsr_picture_border *border)
 {
-    int32_t saved = saving_at(coefficients, predicted, 0);
+    int32_t plane[TSR_PICTURE_COEFFICIENTS];
+    predict(plane, border, TSR_PICTURE_PLANE);
+    int32_t saved[4] = {[TSR_PICTURE_MEAN] = saving(coefficients, (border->above[0] + border->left[0]) >> 1, 0),
+                        [TSR_PICTURE_PLANE] =
+                            saving(coefficients, plane[0], 0) + saving(coefficients, plane[SIZE], SIZE),
+                        [TSR_PICTURE_VERTICAL] = saving(coefficients, border->above[0], 0),
+                        [TSR_PICTURE_HORIZONTAL] = saving(coefficients, border->left[0], 0)};
     for (size_t i = 1; i < SIZE; i++) {
-        if (mode != TSR_PICTURE_MEAN && mode != TSR_PICTURE_HORIZONTAL) {
-            saved += saving_at(coefficients, predicted, i);
-        }
-        if (mode == TSR_PICTURE_HORIZONTAL || mode == TSR_PICTURE_PLANE) {
-            saved += saving_at(coefficients, predicted, SIZE * i);
-        }
-        if (mode == TSR_PICTURE_PLANE) {
-            saved += saving_at(coefficients, predicted, SIZE + i);
-            saved += i > 1u ? saving_at(coefficients, predicted, SIZE * i + 1u) : 0;
+        saved[TSR_PICTURE_VERTICAL] += saving(coefficients, border->above[i], i);
+        saved[TSR_PICTURE_HORIZONTAL] += saving(coefficients, border->left[i], SIZE * i);
+        saved[TSR_PICTURE_PLANE] += saving(coefficients, plane[i], i) + saving(coefficients, plane[SIZE + i], SIZE + i);
+        if (i > 1u) {
+            saved[TSR_PICTURE_PLANE] += saving(coefficients, plane[SIZE * i], SIZE * i) +
+                                        saving(coefficients, plane[SIZE * i + 1u], SIZE * i + 1u);
         }
     }
-    return saved;
+    unsigned best = 0;
+    for (unsigned mode = 1; mode < 4u; mode++) {
+        best = saved[mode] > saved[best] ? mode : best;
+    }
+    return (uint8_t)best;
 }
 
-/* Leaves the residuals of the best mode in coefficients. */
-static uint8_t choose_mode(int32_t *coefficients, const struct tsr_picture_border *border)
+static void subtract_prediction(int32_t *coefficients, const struct tsr_picture_border *border, unsigned mode)
 {
     int32_t predicted[TSR_PICTURE_COEFFICIENTS];
-    int32_t most = 0;
-    unsigned best = 0;
-    for (unsigned mode = 0; mode < 4u; mode++) {
-        predict(predicted, border, mode);
-        const int32_t saved = saving_of(coefficients, predicted, mode);
-        if (mode == 0 || saved > most) {
-            most = saved;
-            best = mode;
-        }
-    }
-    predict(predicted, border, best);
+    predict(predicted, border, mode);
     for (size_t at = 0; at < TSR_PICTURE_COEFFICIENTS; at++) {
         if (predicted[at] != 0) {
             coefficients[at] -= forward_of(predicted[at], at);
         }
     }
-    return (uint8_t)best;
 }
 
 /* Rounding, in 1/256 step: 110 for the mean, then a dead zone that widens with the frequency. */
@@ -225,6 +219,7 @@ void tsr_picture_quantise(struct tsr_picture_block *block, const struct tsr_pict
     int32_t coefficients[TSR_PICTURE_COEFFICIENTS];
     transform_block(coefficients, pixels, stride);
     block->mode = choose_mode(coefficients, border);
+    subtract_prediction(coefficients, border, block->mode);
     block->last = 0;
     for (uint32_t k = 0; k < TSR_PICTURE_COEFFICIENTS; k++) {
         const size_t at = tsr_picture_zigzag[k];
@@ -262,14 +257,11 @@ void tsr_picture_reconstruct(const struct tsr_picture_block *block, const struct
             made[at] += dequantise(block->levels[k], step_q6, at);
         }
     }
-    for (size_t u = 0; u < SIZE; u++) {
-        transform_back(made + SIZE * u, columns + u, SIZE);
-    }
-    for (size_t x = 0; x < SIZE; x++) {
-        int32_t column[SIZE];
-        transform_back(columns + SIZE * x, column, 1);
-        for (size_t y = 0; y < SIZE; y++) {
-            const int32_t pixel = (column[y] + 32) >> 6;
+    transform_back(made, columns, SIZE);
+    transform_back(columns, made, SIZE);
+    for (size_t y = 0; y < SIZE; y++) {
+        for (size_t x = 0; x < SIZE; x++) {
+            const int32_t pixel = (made[SIZE * y + x] + 32) >> 6;
             pixels[y * stride + x] = (uint8_t)(pixel < 0 ? 0 : pixel > 255 ? 255 : pixel);
         }
     }
