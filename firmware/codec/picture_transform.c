@@ -208,9 +208,16 @@ static void subtract_prediction(int32_t *coefficients, const struct tsr_picture_
 }
 
 /* Rounding, in 1/256 step: 110 for the mean, then a dead zone that widens with the frequency. */
+#define ROUNDING_MAX 110u
 static uint32_t rounding_at(uint32_t k)
 {
-    return k == 0 ? 110u : 100u - (k < 32u ? k : 32u) * 19u / 16u;
+    return k == 0 ? ROUNDING_MAX : 100u - (k < 32u ? k : 32u) * 19u / 16u;
+}
+
+static int16_t level_of(int32_t scaled, uint32_t step_q6, uint32_t k)
+{
+    const uint32_t level = ((uint32_t)scaled + ((step_q6 * rounding_at(k)) >> 8)) / step_q6;
+    return (int16_t)(level < TSR_PICTURE_LEVEL_MAX ? level : TSR_PICTURE_LEVEL_MAX);
 }
 
 void tsr_picture_quantise(struct tsr_picture_block *block, const struct tsr_picture_border *border, uint32_t step_q6,
@@ -220,19 +227,22 @@ void tsr_picture_quantise(struct tsr_picture_block *block, const struct tsr_pict
     transform_block(coefficients, pixels, stride);
     block->mode = choose_mode(coefficients, border);
     subtract_prediction(coefficients, border, block->mode);
+    /* Most coefficients are below this and 0 without another look. */
+    const int32_t dead = (int32_t)((step_q6 * (256u - ROUNDING_MAX)) >> 8);
     block->last = 0;
     for (uint32_t k = 0; k < TSR_PICTURE_COEFFICIENTS; k++) {
         const size_t at = tsr_picture_zigzag[k];
         const int32_t value = coefficients[at];
-        const uint32_t scaled = ((uint32_t)magnitude_of(value) * forward_scales[at]) >> 8;
-        const uint32_t raised = scaled + ((step_q6 * rounding_at(k)) >> 8);
-        block->levels[k] = 0;
-        if (raised >= step_q6) {
-            const uint32_t level = raised / step_q6;
-            const int16_t kept = (int16_t)(level < TSR_PICTURE_LEVEL_MAX ? level : TSR_PICTURE_LEVEL_MAX);
-            block->levels[k] = value < 0 ? (int16_t)-kept : kept;
-            block->last = (uint8_t)(k + 1u);
+        const int32_t scaled = (magnitude_of(value) * forward_scales[at]) >> 8;
+        int16_t level = 0;
+        if (scaled >= dead) {
+            level = level_of(scaled, step_q6, k);
+            if (level != 0) {
+                block->last = (uint8_t)(k + 1u);
+                level = value < 0 ? (int16_t)-level : level;
+            }
         }
+        block->levels[k] = level;
     }
 }
 
@@ -250,14 +260,18 @@ void tsr_picture_reconstruct(const struct tsr_picture_block *block, const struct
                              uint32_t step_q6, uint8_t *pixels, size_t stride)
 {
     int32_t made[TSR_PICTURE_COEFFICIENTS], columns[TSR_PICTURE_COEFFICIENTS];
+    const bool is_tall = block->mode == TSR_PICTURE_PLANE || block->mode == TSR_PICTURE_HORIZONTAL;
+    size_t row_end = is_tall ? SIZE : 1u; /* rows of coefficients from here on are 0 */
     predict(made, border, block->mode);
     for (size_t k = 0; k < block->last; k++) {
         if (block->levels[k] != 0) {
             const size_t at = tsr_picture_zigzag[k];
             made[at] += dequantise(block->levels[k], step_q6, at);
+            row_end = at / SIZE >= row_end ? at / SIZE + 1u : row_end;
         }
     }
-    transform_back(made, columns, SIZE);
+    memset(columns, 0, sizeof columns);
+    transform_back(made, columns, row_end);
     transform_back(columns, made, SIZE);
     for (size_t y = 0; y < SIZE; y++) {
         for (size_t x = 0; x < SIZE; x++) {
