@@ -92,7 +92,8 @@ static int steer(struct tsr_picture_encoder *encoder)
     const uint32_t spent = (uint32_t)encoder->range.at + TSR_PICTURE_HEADER_LEN;
     const uint32_t wanted = spent < encoder->target_len ? (encoder->target_len - spent) / bands_left : 0;
     /* One step is about 1/16 of the bytes; half of that is not worth a change. */
-    uint32_t more = encoder->band_len, less = encoder->band_len;
+    uint32_t more = encoder->band_len;
+    uint32_t less = more;
     int change = 0;
     while (change < RATE_CHANGE_MAX && more > wanted + wanted / 32u) {
         more -= more / 16u + 1u;
