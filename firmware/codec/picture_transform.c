@@ -1,7 +1,6 @@
 /*
- * The transform of pictures there and back, prediction among its coefficients,
- * and the quantiser. Predicting coefficients instead of pixels lets the encoder
- * weigh every mode after one transform.
+ * Prediction among a picture's coefficients, and the quantiser. Predicting coefficients instead of pixels lets the
+ * encoder weigh every mode after one transform.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -9,6 +8,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "picture_dct.h"
 #include "picture_transform.h"
 
 #define SIZE 8u
@@ -44,46 +44,6 @@ uint32_t tsr_picture_step_q6(unsigned index)
     return (uint32_t)octave[index % 8u] << (index / 8u);
 }
 
-/* Each of count rows of 8 becomes a column of out: two passes transform a block. H.264's reference. */
-static void transform(const int32_t *in, int32_t *out, size_t count)
-{
-    for (const int32_t *const end = in + SIZE * count; in != end; in += SIZE, out++) {
-        const int32_t s0 = in[0] + in[7], s1 = in[1] + in[6], s2 = in[2] + in[5], s3 = in[3] + in[4];
-        const int32_t d0 = in[0] - in[7], d1 = in[1] - in[6], d2 = in[2] - in[5], d3 = in[3] - in[4];
-        const int32_t a0 = s0 + s3, a1 = s1 + s2, a2 = s0 - s3, a3 = s1 - s2;
-        const int32_t b0 = d1 + d2 + d0 + (d0 >> 1), b1 = d0 - d3 - d2 - (d2 >> 1);
-        const int32_t b2 = d0 + d3 - d1 - (d1 >> 1), b3 = d1 - d2 + d3 + (d3 >> 1);
-        out[0] = a0 + a1;
-        out[SIZE] = b0 + (b3 >> 2);
-        out[2 * SIZE] = a2 + (a3 >> 1);
-        out[3 * SIZE] = b1 + (b2 >> 2);
-        out[4 * SIZE] = a0 - a1;
-        out[5 * SIZE] = b2 - (b1 >> 2);
-        out[6 * SIZE] = (a2 >> 1) - a3;
-        out[7 * SIZE] = (b0 >> 2) - b3;
-    }
-}
-
-/* The same back: ITU-T H.264, 8.5.13. */
-static void transform_back(const int32_t *in, int32_t *out, size_t count)
-{
-    for (const int32_t *const end = in + SIZE * count; in != end; in += SIZE, out++) {
-        const int32_t a0 = in[0] + in[4], a1 = in[0] - in[4], a2 = (in[2] >> 1) - in[6], a3 = in[2] + (in[6] >> 1);
-        const int32_t e0 = a0 + a3, e1 = a1 + a2, e2 = a1 - a2, e3 = a0 - a3;
-        const int32_t b0 = in[5] - in[3] - in[7] - (in[7] >> 1), b1 = in[1] + in[7] - in[3] - (in[3] >> 1);
-        const int32_t b2 = in[7] - in[1] + in[5] + (in[5] >> 1), b3 = in[3] + in[5] + in[1] + (in[1] >> 1);
-        const int32_t o0 = b0 + (b3 >> 2), o1 = b1 + (b2 >> 2), o2 = (b1 >> 2) - b2, o3 = b3 - (b0 >> 2);
-        out[0] = e0 + o3;
-        out[SIZE] = e1 + o2;
-        out[2 * SIZE] = e2 + o1;
-        out[3 * SIZE] = e3 + o0;
-        out[4 * SIZE] = e3 - o0;
-        out[5 * SIZE] = e2 - o1;
-        out[6 * SIZE] = e1 - o2;
-        out[7 * SIZE] = e0 - o3;
-    }
-}
-
 void tsr_picture_border_of(struct tsr_picture_border *border, const uint8_t *above, const uint8_t *left,
                            size_t left_stride)
 {
@@ -92,7 +52,7 @@ void tsr_picture_border_of(struct tsr_picture_border *border, const uint8_t *abo
         pixels[i] = above[i];
         pixels[SIZE + i] = left[i * left_stride];
     }
-    transform(pixels, made, 2);
+    tsr_picture_transform(pixels, made, 2);
     for (size_t i = 0; i < SIZE; i++) {
         border->above[i] = (int16_t)((made[SIZE * i] * inverse_norms[i] + 128) >> 8);
         border->left[i] = (int16_t)((made[SIZE * i + 1u] * inverse_norms[i] + 128) >> 8);
@@ -147,8 +107,8 @@ static void transform_block(int32_t made[TSR_PICTURE_COEFFICIENTS], const uint8_
             made[SIZE * y + x] = pixels[y * stride + x];
         }
     }
-    transform(made, columns, SIZE);
-    transform(columns, made, SIZE);
+    tsr_picture_transform(made, columns, SIZE);
+    tsr_picture_transform(columns, made, SIZE);
 }
 
 /* From inverse to forward scale. */
@@ -271,8 +231,8 @@ void tsr_picture_reconstruct(const struct tsr_picture_block *block, const struct
         }
     }
     memset(columns, 0, sizeof columns);
-    transform_back(made, columns, row_end);
-    transform_back(columns, made, SIZE);
+    tsr_picture_transform_back(made, columns, row_end);
+    tsr_picture_transform_back(columns, made, SIZE);
     for (size_t y = 0; y < SIZE; y++) {
         for (size_t x = 0; x < SIZE; x++) {
             const int32_t pixel = (made[SIZE * y + x] + 32) >> 6;
