@@ -160,9 +160,15 @@ static void subtract_prediction(int32_t *coefficients, const struct tsr_picture_
 {
     int32_t predicted[TSR_PICTURE_COEFFICIENTS];
     predict(predicted, border, mode);
-    for (size_t at = 0; at < TSR_PICTURE_COEFFICIENTS; at++) {
-        if (predicted[at] != 0) {
-            coefficients[at] -= forward_of(predicted[at], at);
+    /* Only the plane has a second row and column. */
+    const size_t lines = mode == TSR_PICTURE_PLANE ? 2u : 1u;
+    for (size_t line = 0; line < lines; line++) {
+        for (size_t i = line; i < SIZE; i++) {
+            const size_t across = SIZE * line + i, down = SIZE * i + line;
+            coefficients[across] -= forward_of(predicted[across], across);
+            if (across != down) {
+                coefficients[down] -= forward_of(predicted[down], down);
+            }
         }
     }
 }
