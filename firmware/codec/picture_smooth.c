@@ -11,12 +11,6 @@ static int within(int value, int limit)
     return value < -limit ? -limit : value > limit ? limit : value;
 }
 
-/* A neighbour's pull, in 1/8: a quarter of the difference, within the limit. */
-static int pull(int difference, int limit, bool across)
-{
-    return within(2 * difference, across ? 4 * limit : limit);
-}
-
 void tsr_picture_smooth_row(const struct tsr_picture_model *model, unsigned y, uint8_t *out)
 {
     const struct tsr_picture_rows rows = tsr_picture_rows_of(model);
@@ -24,25 +18,22 @@ void tsr_picture_smooth_row(const struct tsr_picture_model *model, unsigned y, u
     const unsigned first = TSR_PICTURE_BLOCK * (model->band - 1u);
     const uint8_t *const limits = y >= first ? rows.limits_above : rows.limits;
     const uint8_t *const here = rows.pixels + (size_t)(y + 2u - first) * rows.stride;
-    const unsigned width = model->info.width, last_row = model->info.height - 1u;
-    const unsigned in_block = y % TSR_PICTURE_BLOCK;
+    /* A pixel stands for its neighbours outside the picture: it does not pull itself. */
+    const uint8_t *const above = y > 0 ? here - rows.stride : here;
+    const uint8_t *const below = y + 1u < model->info.height ? here + rows.stride : here;
+    const unsigned width = model->info.width, line = y % TSR_PICTURE_BLOCK;
+    int left = here[0];
     for (unsigned x = 0; x < width; x++) {
-        const int pixel = here[x], limit = limits[x / TSR_PICTURE_BLOCK];
+        const int inside = limits[x / TSR_PICTURE_BLOCK], across = 4 * inside;
         const unsigned column = x % TSR_PICTURE_BLOCK;
-        int sum = 4;
-        if (x > 0) {
-            sum += pull(here[x - 1u] - pixel, limit, column == 0);
-        }
-        if (x + 1u < width) {
-            sum += pull(here[x + 1u] - pixel, limit, column == TSR_PICTURE_BLOCK - 1u);
-        }
-        if (y > 0) {
-            sum += pull(*(here + x - rows.stride) - pixel, limit, in_block == 0);
-        }
-        if (y < last_row) {
-            sum += pull(here[x + rows.stride] - pixel, limit, in_block == TSR_PICTURE_BLOCK - 1u);
-        }
+        const int pixel = here[x], right = x + 1u < width ? here[x + 1u] : pixel;
+        /* Each pulls by a quarter of the difference, in 1/8, within its limit. */
+        const int sum = within(2 * (left - pixel), column == 0 ? across : inside) +
+                        within(2 * (right - pixel), column == TSR_PICTURE_BLOCK - 1u ? across : inside) +
+                        within(2 * (above[x] - pixel), line == 0 ? across : inside) +
+                        within(2 * (below[x] - pixel), line == TSR_PICTURE_BLOCK - 1u ? across : inside);
         /* The pulls' weights sum to 1 at most, so this lies between the five pixels. */
-        out[x] = (uint8_t)(pixel + (sum >> 3));
+        out[x] = (uint8_t)(pixel + ((sum + 4) >> 3));
+        left = pixel;
     }
 }
