@@ -15,7 +15,7 @@
 #include "picture_block.h"
 #include "tsr/base/bytes.h"
 
-#define RATE_CHANGE_MAX 4
+#define RATE_CHANGE_MAX 6
 
 /* docs/codec.md, 5.10: a block takes at most 64 (16 * 11.01 + 10) + 20 * 11.01 + 3 bits, 1516 bytes, a band 4 bytes
  * more; direct bits lose less than 2^-11 of a bit each by rounding. */
@@ -91,16 +91,16 @@ static int steer(struct tsr_picture_encoder *encoder)
     }
     const uint32_t spent = (uint32_t)encoder->range.at + TSR_PICTURE_HEADER_LEN;
     const uint32_t wanted = spent < encoder->target_len ? (encoder->target_len - spent) / bands_left : 0;
-    /* One step is about 1/16 of the bytes; half of that is not worth a change. */
+    /* One step is about 1/14 of the bytes; half of that is not worth a change. */
     uint32_t more = encoder->band_len;
     uint32_t less = more;
     int change = 0;
     while (change < RATE_CHANGE_MAX && more > wanted + wanted / 32u) {
-        more -= more / 16u + 1u;
+        more -= more / 14u + 1u;
         change++;
     }
     while (change > -RATE_CHANGE_MAX && less + less / 32u < wanted) {
-        less += less / 16u + 1u;
+        less += less / 14u + 1u;
         change--;
     }
     encoder->band_len = change > 0 ? more : less; /* as it would have been with the new step */
