@@ -17,7 +17,7 @@
 /* The step changes by at most this from band to band. */
 #define TSR_PICTURE_STEP_CHANGE_MAX 8
 
-/* What contexts start from, docs/codec.md, 1.6. */
+/* What contexts start from, docs/codec.md, 5.7. */
 extern const uint16_t tsr_picture_prior[TSR_PICTURE_CONTEXT_COUNT];
 
 /*

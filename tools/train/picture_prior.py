@@ -4,9 +4,9 @@
     picture_prior.py DATA [--without PREFIX] [--out FILE]
 
 DATA is searched for the kinds of pictures in SOURCES. Each is cropped to 4:3, reduced to one of the two sizes of the
-product and coded at the steps that come closest to an SSIM of 0.86, 0.90 and 0.94; what each context is asked there is one stream of bits.
-The prior of a context is the pair of probability and count with which the codec's own contexts code all of its
-streams in the fewest bits. --without leaves out the pictures whose folder's name begins so, to measure on them.
+product and coded at the steps that come closest to an SSIM of 0.86, 0.90 and 0.94; what each context is asked there is
+one stream of bits. The prior of a context is the pair of probability and count with which the codec's own
+contexts code all of its streams in the fewest bits. --without leaves out the pictures whose folder's name begins so, to measure on them.
 Needs a C compiler, NumPy and OpenCV.
 
 SPDX-License-Identifier: Apache-2.0
