@@ -32,34 +32,65 @@ size_t tsr_map_encoded_len_max(const struct tsr_map_info *info)
     return TSR_MAP_ENCODED_LEN_MAX(info->width, info->height, info->disparities, info->step_log2);
 }
 
-enum tsr_status tsr_map_encode_start(struct tsr_map_encoder *encoder, const struct tsr_map_info *info,
-                                     const struct tsr_map_reference *reference, uint8_t *out, size_t out_cap,
-                                     uint16_t *scratch, size_t scratch_cap)
+static enum tsr_status start_encoder(struct tsr_map_encoder *encoder, const struct tsr_map_info *info,
+                                     const struct tsr_map_reference *reference, const uint16_t *cells,
+                                     struct tsr_writer *writer, uint16_t *scratch, size_t scratch_cap)
 {
-    if (encoder == NULL || info == NULL || out == NULL) {
-        return TSR_ERR_ARG;
-    }
-    const size_t header_len = reference != NULL ? TSR_MAP_HEADER_LEN_MAX : TSR_MAP_HEADER_LEN;
-    const enum tsr_status status = out_cap < header_len
-                                       ? TSR_ERR_NOBUF
-                                       : tsr_map_model_start(&encoder->model, info, reference, scratch, scratch_cap);
+    const enum tsr_status status = tsr_map_model_start(&encoder->model, info, reference, cells, scratch, scratch_cap);
     if (status != TSR_OK) {
         return status;
     }
-    struct tsr_writer writer = tsr_writer_make(out, header_len);
-    tsr_write_u8(&writer, (uint8_t)(TSR_MAP_FORMAT_VERSION | (reference != NULL ? MODE_REFERENCE : MODE_ALONE) << 4));
-    tsr_write_u8(&writer, (uint8_t)(info->step_log2 | (unsigned)info->near << 3 | (unsigned)tsr_map_prior.id << 4));
-    tsr_write_u8(&writer, (uint8_t)(info->disparities - 1u));
-    tsr_write_u16(&writer, info->width);
-    tsr_write_u16(&writer, info->height);
-    tsr_write_u16(&writer, (uint16_t)info->d0_q4);
-    if (reference != NULL) {
-        tsr_write_u16(&writer, reference->id);
-    }
-    encoder->header_len = (uint8_t)header_len;
+    const unsigned mode = reference != NULL ? MODE_REFERENCE : MODE_ALONE;
+    tsr_write_u8(writer, (uint8_t)(TSR_MAP_FORMAT_VERSION | mode << 4));
+    tsr_write_u8(writer, (uint8_t)(info->step_log2 | (unsigned)info->near << 3 | (unsigned)tsr_map_prior.id << 4));
+    tsr_write_u8(writer, (uint8_t)(info->disparities - 1u));
+    tsr_write_u16(writer, info->width);
+    tsr_write_u16(writer, info->height);
+    tsr_write_u16(writer, (uint16_t)info->d0_q4);
     encoder->status = TSR_OK;
-    tsr_range_encode_start(&encoder->range, out + header_len, out_cap - header_len);
     return TSR_OK;
+}
+
+enum tsr_status tsr_map_encode_start(struct tsr_map_encoder *encoder, const struct tsr_map_info *info, uint8_t *out,
+                                     size_t out_cap, uint16_t *scratch, size_t scratch_cap)
+{
+    if (encoder == NULL || info == NULL || out == NULL || info->near > TSR_MAP_NEAR_MAX) {
+        return TSR_ERR_ARG;
+    }
+    if (out_cap < TSR_MAP_HEADER_LEN) {
+        return TSR_ERR_NOBUF;
+    }
+    struct tsr_writer writer = tsr_writer_make(out, TSR_MAP_HEADER_LEN);
+    const enum tsr_status status =
+        start_encoder(encoder, info, NULL, tsr_map_prior.cells[info->near], &writer, scratch, scratch_cap);
+    if (status == TSR_OK) {
+        encoder->code_row = tsr_map_encode_row;
+        encoder->header_len = TSR_MAP_HEADER_LEN;
+        tsr_range_encode_start(&encoder->range, out + TSR_MAP_HEADER_LEN, out_cap - TSR_MAP_HEADER_LEN);
+    }
+    return status;
+}
+
+enum tsr_status tsr_map_encode_start_against(struct tsr_map_encoder *encoder, const struct tsr_map_info *info,
+                                             const struct tsr_map_reference *reference, uint8_t *out, size_t out_cap,
+                                             uint16_t *scratch, size_t scratch_cap)
+{
+    if (encoder == NULL || info == NULL || reference == NULL || out == NULL) {
+        return TSR_ERR_ARG;
+    }
+    if (out_cap < TSR_MAP_HEADER_LEN_MAX) {
+        return TSR_ERR_NOBUF;
+    }
+    struct tsr_writer writer = tsr_writer_make(out, TSR_MAP_HEADER_LEN_MAX);
+    const enum tsr_status status =
+        start_encoder(encoder, info, reference, tsr_map_reference_prior.cells, &writer, scratch, scratch_cap);
+    if (status == TSR_OK) {
+        tsr_write_u16(&writer, reference->id);
+        encoder->code_row = tsr_map_encode_reference_row;
+        encoder->header_len = TSR_MAP_HEADER_LEN_MAX;
+        tsr_range_encode_start(&encoder->range, out + TSR_MAP_HEADER_LEN_MAX, out_cap - TSR_MAP_HEADER_LEN_MAX);
+    }
+    return status;
 }
 
 static void row_from_labels(const struct tsr_map_model *model, uint16_t *row, const uint16_t *labels)
@@ -99,7 +130,7 @@ enum tsr_status tsr_map_encode_rows(struct tsr_map_encoder *encoder, const uint1
             encoder->status = TSR_ERR_ARG;
             return encoder->status;
         }
-        tsr_map_encode_row(&encoder->model, &encoder->range);
+        encoder->code_row(&encoder->model, &encoder->range);
     }
     return encoder->range.at > encoder->range.cap ? TSR_ERR_NOBUF : progress(&encoder->model);
 }
@@ -172,8 +203,9 @@ enum tsr_status tsr_map_decode_start(struct tsr_map_decoder *decoder, const uint
     if (read.has_reference && (reference == NULL || reference->map == NULL || reference->id != read.reference_id)) {
         return TSR_ERR_NOREF;
     }
-    const enum tsr_status started =
-        tsr_map_model_start(&decoder->model, &read, read.has_reference ? reference : NULL, scratch, scratch_cap);
+    const enum tsr_status started = tsr_map_model_start(
+        &decoder->model, &read, read.has_reference ? reference : NULL,
+        read.has_reference ? tsr_map_reference_prior.cells : tsr_map_prior.cells[read.near], scratch, scratch_cap);
     if (started != TSR_OK) {
         return started;
     }
@@ -207,7 +239,8 @@ enum tsr_status tsr_map_decode_rows(struct tsr_map_decoder *decoder, uint16_t *r
     const struct tsr_map_info *info = &decoder->model.info;
     for (uint16_t y = 0; y < row_count; y++) {
         const uint16_t *labels = tsr_map_row_labels(&decoder->model, 0);
-        if (!tsr_map_decode_row(&decoder->model, &decoder->range)) {
+        if (!(info->has_reference ? tsr_map_decode_reference_row : tsr_map_decode_row)(&decoder->model,
+                                                                                       &decoder->range)) {
             decoder->status = TSR_ERR_FORMAT;
             fill_invalid(info, rows, stride, y, row_count);
             return decoder->status;

@@ -17,7 +17,8 @@ bool tsr_map_is_valid_info(const struct tsr_map_info *info)
 }
 
 enum tsr_status tsr_map_model_start(struct tsr_map_model *model, const struct tsr_map_info *info,
-                                    const struct tsr_map_reference *reference, uint16_t *scratch, size_t scratch_cap)
+                                    const struct tsr_map_reference *reference, const uint16_t *cells, uint16_t *scratch,
+                                    size_t scratch_cap)
 {
     if (scratch == NULL || !tsr_map_is_valid_info(info) || (reference != NULL && reference->map == NULL)) {
         return TSR_ERR_ARG;
@@ -44,7 +45,7 @@ enum tsr_status tsr_map_model_start(struct tsr_map_model *model, const struct ts
     model->coding = reference != NULL ? TSR_MAP_CODING_REFERENCE
                     : info->near > 0  ? TSR_MAP_CODING_NEAR
                                       : TSR_MAP_CODING_ALONE;
-    memcpy(model->cells, tsr_map_prior.cells[model->coding], sizeof model->cells);
+    memcpy(model->cells, cells, sizeof model->cells);
     return TSR_OK;
 }
 

@@ -45,14 +45,20 @@ enum {
 };
 _Static_assert(TSR_MAP_CELLS_END == TSR_MAP_CELL_COUNT, "the public header sizes the model");
 
-/* What was learned from maps. */
+/* What was learned from maps; log-odds in eighths, and P(1) in UQ0.16. A reference has tables and contexts of its own,
+ * so that what codes maps alone need not hold them. */
 struct tsr_map_prior {
     uint8_t id;           /* in the header, 1 .. 15 */
-    uint32_t matcher_crc; /* of the maps of the matcher it was trained for */
-    int8_t weights[TSR_MAP_KIND_COUNT][TSR_MAP_TABLE_COUNT][TSR_MAP_TABLE_LEN]; /* log-odds in eighths */
-    uint16_t cells[TSR_MAP_CODING_COUNT][TSR_MAP_CELL_COUNT];                   /* P(1), UQ0.16 */
+    uint16_t matcher_crc; /* of the maps of the matcher it was trained for */
+    int8_t weights[TSR_MAP_KIND_COUNT][TSR_MAP_TABLE_COUNT_ALONE][TSR_MAP_TABLE_LEN];
+    uint16_t cells[TSR_MAP_CODING_REFERENCE][TSR_MAP_CELL_COUNT]; /* alone, near */
+};
+struct tsr_map_reference_prior {
+    int8_t weights[TSR_MAP_KIND_COUNT][TSR_MAP_TABLE_COUNT - TSR_MAP_TABLE_COUNT_ALONE][TSR_MAP_TABLE_LEN];
+    uint16_t cells[TSR_MAP_CELL_COUNT];
 };
 extern const struct tsr_map_prior tsr_map_prior; /* map_prior.c, made by tarsier train-prior */
+extern const struct tsr_map_reference_prior tsr_map_reference_prior;
 
 static inline uint16_t *tsr_map_row_labels(const struct tsr_map_model *model, unsigned rows_up)
 {
@@ -60,28 +66,17 @@ static inline uint16_t *tsr_map_row_labels(const struct tsr_map_model *model, un
     return model->scratch + at * (model->info.width + TSR_MAP_PAD_LEFT + TSR_MAP_PAD_RIGHT) + TSR_MAP_PAD_LEFT;
 }
 
-/* The sum of what the tables say, rounded to levels of half a unit. The bias keeps the sum positive: eight weights of
- * -128 .. 127. */
-static inline unsigned tsr_map_level(const int8_t (*weights)[TSR_MAP_TABLE_LEN], const uint8_t *index,
-                                     unsigned table_count)
+/* The level of a sum of weights: rounded to half a unit. The bias keeps it positive: eight weights of -128 .. 127. */
+static inline unsigned tsr_map_level(int sum)
 {
-    int sum = 1024 + 2;
-    for (unsigned table = 0; table < table_count; table++) {
-        sum += weights[table][index[table]];
-    }
-    const unsigned half_units = (unsigned)sum / 4u;
+    const unsigned half_units = (unsigned)(sum + 1024 + 2) / 4u;
     return half_units < 240u ? 0 : half_units > 271u ? 31u : half_units - 240u;
 }
 
-static inline unsigned tsr_map_choice_cell(unsigned kind, const uint8_t *index, unsigned table_count)
-{
-    return TSR_MAP_CANDIDATE_AT + TSR_MAP_LEVEL_COUNT * kind +
-           tsr_map_level(tsr_map_prior.weights[kind], index, table_count);
-}
-
-/* Check and begin: TSR_ERR_ARG, TSR_ERR_SIZE or TSR_ERR_NOBUF as tsr_map_encode_start says. */
+/* Check and begin, the contexts from cells: TSR_ERR_ARG, TSR_ERR_SIZE or TSR_ERR_NOBUF as tsr_map_encode_start says. */
 enum tsr_status tsr_map_model_start(struct tsr_map_model *model, const struct tsr_map_info *info,
-                                    const struct tsr_map_reference *reference, uint16_t *scratch, size_t scratch_cap);
+                                    const struct tsr_map_reference *reference, const uint16_t *cells, uint16_t *scratch,
+                                    size_t scratch_cap);
 
 bool tsr_map_is_valid_info(const struct tsr_map_info *info);
 
@@ -92,8 +87,10 @@ bool tsr_map_take_row(struct tsr_map_model *model, const uint16_t *row);
 /* Code row model->row, whose labels stand in the scratch, and step to the next. With near > 0 the labels become those
  * that a decoder will find. */
 void tsr_map_encode_row(struct tsr_map_model *model, struct tsr_range_encoder *range);
+void tsr_map_encode_reference_row(struct tsr_map_model *model, struct tsr_range_encoder *range);
 
 /* Decode row model->row into the scratch and step to the next; false if it meets a label that does not exist. */
 bool tsr_map_decode_row(struct tsr_map_model *model, struct tsr_range_decoder *range);
+bool tsr_map_decode_reference_row(struct tsr_map_model *model, struct tsr_range_decoder *range);
 
 #endif

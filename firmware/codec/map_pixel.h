@@ -3,11 +3,12 @@
  *
  * The file that includes this has defined its side of the questions:
  *
+ *   AGAINST_REFERENCE         whether the map is coded against a reference: 0 or 1
  *   struct side               what answers them
  *   side_bit(side, model, cell, bit)                one adaptive bit, inline: of the questions that most pixels end at
  *   side_rare_bit(side, model, cell, bit)           the same, out of line
- *   side_choice(side, model, kind, index, table_count, bit)
- *                             the same, its cell chosen by the trained tables
+ *   side_choice(side, model, kind, index, cell, bit)
+ *                             the same for a candidate, whose cell the trained tables have chosen by kind and index
  *   side_direct(side, value, bit_count)             equally likely bits
  *   side_spent_bits(side)                           shifted out so far
  *
@@ -52,7 +53,7 @@ struct around {
     uint16_t *here;
     const uint16_t *up;
     const uint16_t *up2;
-    const struct still *still; /* or NULL */
+    const struct still *still; /* set if AGAINST_REFERENCE */
     unsigned near;             /* 0 in a decoder */
     unsigned run;              /* pixels before this one whose label was that of their own W */
 };
@@ -139,6 +140,19 @@ static inline void index_reference(const struct around *at, unsigned candidate, 
         (uint8_t)(changes(at) | (unsigned)(still->here == candidate) << 4 | (unsigned)(still->e == still->here) << 5);
 }
 
+/* The context that the trained tables choose. */
+static inline unsigned candidate_cell(unsigned kind, const uint8_t *index)
+{
+    const int8_t(*const weights)[TSR_MAP_TABLE_LEN] = tsr_map_prior.weights[kind];
+    int sum = weights[0][index[0]] + weights[1][index[1]] + weights[2][index[2]] + weights[3][index[3]] +
+              weights[4][index[4]];
+    if (AGAINST_REFERENCE) {
+        const int8_t(*const more)[TSR_MAP_TABLE_LEN] = tsr_map_reference_prior.weights[kind];
+        sum += more[0][index[5]] + more[1][index[6]] + more[2][index[7]];
+    }
+    return TSR_MAP_CANDIDATE_AT + TSR_MAP_LEVEL_COUNT * kind + tsr_map_level(sum);
+}
+
 /* Is it this label? */
 static TSR_OUT_OF_LINE bool ask(struct tsr_map_model *model, struct side *side, const struct around *at,
                                 struct asked *asked, unsigned kind, unsigned candidate)
@@ -151,14 +165,10 @@ static TSR_OUT_OF_LINE bool ask(struct tsr_map_model *model, struct side *side, 
         (uint8_t)pair_index(pair_of(at->here - 3), candidate),
         (uint8_t)pair_index((candidate == w ? n : w) | (uint32_t)at->up2[-1] << 16, candidate),
     };
-    bool is_it = is_near(at, candidate);
-    if (at->still == NULL) {
-        is_it = side_choice(side, model, kind, index, TSR_MAP_TABLE_COUNT_ALONE, is_it);
-    } else {
+    if (AGAINST_REFERENCE) {
         index_reference(at, candidate, index + TSR_MAP_TABLE_COUNT_ALONE);
-        is_it = side_choice(side, model, kind, index, TSR_MAP_TABLE_COUNT, is_it);
     }
-    if (is_it) {
+    if (side_choice(side, model, kind, index, candidate_cell(kind, index), is_near(at, candidate))) {
         *at->here = (uint16_t)candidate;
         return true;
     }
@@ -184,7 +194,7 @@ static inline bool ask_nearest(struct tsr_map_model *model, struct side *side, c
 static inline bool ask_still(struct tsr_map_model *model, struct side *side, const struct around *at,
                              struct asked *asked)
 {
-    return at->still != NULL && !was_asked(asked, at->still->here) &&
+    return AGAINST_REFERENCE && !was_asked(asked, at->still->here) &&
            ask(model, side, at, asked, KIND_OTHER, at->still->here);
 }
 
@@ -208,7 +218,7 @@ static inline unsigned predict(const struct tsr_map_model *model, const struct a
 {
     const unsigned invalid = model->invalid;
     const unsigned w = at->here[-1], n = at->up[0], nw = at->up[-1], ne = at->up[1];
-    if (at->still != NULL && at->still->here != invalid && (w == at->still->w || n == at->still->n)) {
+    if (AGAINST_REFERENCE && at->still->here != invalid && (w == at->still->w || n == at->still->n)) {
         return at->still->here;
     }
     if (w != invalid && n != invalid && nw != invalid) {
@@ -304,7 +314,7 @@ static inline unsigned flat_context(const struct tsr_map_model *model, const str
 {
     const unsigned w = at->here[-1];
     const unsigned context = w == model->invalid;
-    if (at->still != NULL) {
+    if (AGAINST_REFERENCE) {
         return context + 2u * (unsigned)(at->still->here == w) + 4u * (unsigned)(at->still->e == w) +
                8u * (unsigned)(at->still->s == w) + 16u * (unsigned)(changes(at) != 0);
     }
@@ -334,22 +344,29 @@ static TSR_OUT_OF_LINE bool code_label(struct tsr_map_model *model, struct side 
     return code_difference(model, side, at, &asked, predicted);
 }
 
+/* A disparity of the reference, one that this map cannot have as none. */
+static inline uint16_t reference_label(const struct tsr_map_model *model, uint16_t value)
+{
+    const uint16_t label = TSR_MAP_LABEL(value, model->info.step_log2);
+    return label < model->label_count ? label : model->invalid;
+}
+
 static inline struct still look_up(const struct tsr_map_model *model, unsigned x)
 {
     const struct tsr_map_reference *reference = &model->reference;
-    const unsigned y = model->row, width = model->info.width, step = model->info.step_log2;
+    const unsigned y = model->row, width = model->info.width;
     const uint16_t *row = reference->map + (size_t)y * reference->stride + x;
-    const uint16_t *above = row - reference->stride;
+    const uint16_t *above = row - reference->stride, *below = row + reference->stride;
     const bool left = x > 0, right = x + 1u < width, top = y > 0, bottom = y + 1u < model->info.height;
     const uint16_t none = model->invalid;
-    return (struct still){.here = TSR_MAP_LABEL(row[0], step),
-                          .w = left ? TSR_MAP_LABEL(row[-1], step) : none,
-                          .e = right ? TSR_MAP_LABEL(row[1], step) : none,
-                          .n = top ? TSR_MAP_LABEL(above[0], step) : none,
-                          .nw = top && left ? TSR_MAP_LABEL(above[-1], step) : none,
-                          .ne = top && right ? TSR_MAP_LABEL(above[1], step) : none,
-                          .s = bottom ? TSR_MAP_LABEL(row[reference->stride], step) : none,
-                          .se = bottom && right ? TSR_MAP_LABEL(row[reference->stride + 1u], step) : none};
+    return (struct still){.here = reference_label(model, row[0]),
+                          .w = left ? reference_label(model, row[-1]) : none,
+                          .e = right ? reference_label(model, row[1]) : none,
+                          .n = top ? reference_label(model, above[0]) : none,
+                          .nw = top && left ? reference_label(model, above[-1]) : none,
+                          .ne = top && right ? reference_label(model, above[1]) : none,
+                          .s = bottom ? reference_label(model, below[0]) : none,
+                          .se = bottom && right ? reference_label(model, below[1]) : none};
 }
 
 static inline bool code_literal(const struct tsr_map_model *model, struct side *side, uint16_t *here)
@@ -395,7 +412,7 @@ static inline bool code_pixel(struct tsr_map_model *model, struct side *side, st
 {
     const unsigned w = at->here[-1];
     struct still still;
-    if (model->reference.map != NULL) {
+    if (AGAINST_REFERENCE) {
         still = look_up(model, x);
         at->still = &still;
     }
@@ -427,7 +444,7 @@ static inline bool code_labels(struct tsr_map_model *model, struct side *side, s
 {
     while (x < end) {
         bool missed = false;
-        if (*continued && model->reference.map == NULL) {
+        if (*continued && !AGAINST_REFERENCE) {
             x += continue_flat(model, side, at, end - x, &missed);
             if (x == end) {
                 return true;

@@ -17,7 +17,7 @@ static enum tsr_status start_encoding(struct tsr_node *node, struct tsr_map_enco
                                       .d0_q4 = node->config.d0_q4};
     size_t in_front = TSR_MESSAGE_HEADER_LEN + TSR_BODY_MAP_HEADER_LEN + node->reference_len;
     uint16_t *rows = (uint16_t *)(void *)(node->scratch + sizeof *encoder);
-    return tsr_map_encode_start(encoder, &info, NULL, node->message + in_front,
+    return tsr_map_encode_start(encoder, &info, node->message + in_front,
                                 node->message_cap - in_front - TSR_CCM_TAG_LEN, rows,
                                 (node->scratch_cap - sizeof *encoder) / sizeof *rows);
 }

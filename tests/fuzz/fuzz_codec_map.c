@@ -46,8 +46,8 @@ static void code_map_again(const struct tsr_map_info *info)
     const size_t scratch_count = sizeof fuzz_map_scratch / sizeof *fuzz_map_scratch;
     struct tsr_map_info read;
     size_t len = 0;
-    require_map(tsr_map_encode_start(&encoder, info, NULL, fuzz_map_out, tsr_map_encoded_len_max(info),
-                                     fuzz_map_scratch, scratch_count) == TSR_OK);
+    require_map(tsr_map_encode_start(&encoder, info, fuzz_map_out, tsr_map_encoded_len_max(info), fuzz_map_scratch,
+                                     scratch_count) == TSR_OK);
     require_map(tsr_map_encode_rows(&encoder, fuzz_map, info->width, info->height) == TSR_OK);
     require_map(tsr_map_encode_finish(&encoder, &len) == TSR_OK);
     require_map(tsr_map_decode_start(&decoder, fuzz_map_out, len, NULL, fuzz_map_scratch, scratch_count, &read) ==

@@ -17,6 +17,9 @@
 #define LLVMFuzzerTestOneInput fuzz_view_one_input
 #include "fuzz_codec_view.c"
 #undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_picture_one_input
+#include "fuzz_codec_picture.c"
+#undef LLVMFuzzerTestOneInput
 
 #include "corpus_replay.h"
 
@@ -37,6 +40,10 @@ static void test_view_corpus(void)
 {
     corpus_replay(fuzz_view_one_input, "corpus_codec_view", MUTATIONS);
 }
+static void test_picture_corpus(void)
+{
+    corpus_replay(fuzz_picture_one_input, "corpus_codec_picture", MUTATIONS);
+}
 
 int main(int argc, char **argv)
 {
@@ -45,5 +52,6 @@ int main(int argc, char **argv)
     RUN_TEST(test_map_corpus);
     RUN_TEST(test_gray_corpus);
     RUN_TEST(test_view_corpus);
+    RUN_TEST(test_picture_corpus);
     return UNITY_END();
 }

@@ -24,6 +24,7 @@ RULES = {
     "hal/mps2": {"hal", "base"},
     "tools/host": {"host", "base", "vision", "codec", "wire"},
     "tools/tarsier": {"stage", "stereo", "host", "base", "codec", "wire", "vision"},
+    "tools/train": {"codec", "base"},
     "emulator": {"emulator", "node", "hal", "host", "base", "wire"},
     "sink": {"sink", "host", "base", "codec", "wire"},
 }

@@ -83,8 +83,8 @@ static size_t encode(struct codec_random *random, const struct tsr_map_info *inf
 {
     const size_t cap = tsr_map_encoded_len_max(info);
     size_t len = 0;
-    TEST_ASSERT_EQUAL(
-        TSR_OK, tsr_map_encode_start(&encoder, info, NULL, bytes, cap, scratch, TSR_MAP_SCRATCH_COUNT(info->width)));
+    TEST_ASSERT_EQUAL(TSR_OK,
+                      tsr_map_encode_start(&encoder, info, bytes, cap, scratch, TSR_MAP_SCRATCH_COUNT(info->width)));
     unsigned y = 0;
     while (y < info->height) {
         const unsigned left = info->height - y;
@@ -193,8 +193,8 @@ static void test_greedy_adversary_stays_below_the_bound(void)
         const struct tsr_map_info info = {.width = 160, .height = 120, .disparities = 63, .step_log2 = steps_log2[i]};
         const size_t cap = tsr_map_encoded_len_max(&info);
         size_t len = 0;
-        TEST_ASSERT_EQUAL(
-            TSR_OK, tsr_map_encode_start(&encoder, &info, NULL, out, cap, scratch, TSR_MAP_SCRATCH_COUNT(info.width)));
+        TEST_ASSERT_EQUAL(TSR_OK,
+                          tsr_map_encode_start(&encoder, &info, out, cap, scratch, TSR_MAP_SCRATCH_COUNT(info.width)));
         for (unsigned y = 0; y < info.height; y++) {
             size_t most = 0;
             for (unsigned attempt = 0; attempt < 24; attempt++) {
@@ -230,7 +230,7 @@ static void test_largest_noise_stays_below_the_bound(void)
         .width = TSR_IMAGE_WIDTH_MAX, .height = TSR_IMAGE_HEIGHT_MAX, .disparities = 127, .step_log2 = 0};
     struct codec_random random = codec_random_of_seed(5);
     size_t len = 0;
-    TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_start(&encoder, &info, NULL, large, sizeof large, wide_scratch,
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_start(&encoder, &info, large, sizeof large, wide_scratch,
                                                    TSR_MAP_SCRATCH_COUNT(info.width)));
     for (unsigned y = 0; y < info.height; y++) {
         for (unsigned x = 0; x < info.width; x++) {

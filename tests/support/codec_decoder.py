@@ -136,13 +136,14 @@ def shaped(numbers, *shape):
 
 
 def read_map_prior():
-    """2.8: (tables T, start values of the contexts)"""
-    text = (SOURCE / "firmware/codec/map_prior.c").read_text(encoding="utf-8")
-    weights, cells = re.search(r"\.weights = (.*)\.cells = (.*)", text, re.DOTALL).groups()
-    weights, cells = ([int(number) for number in re.findall(r"-?\d+", part)] for part in (weights, cells))
-    if len(weights) != 6 * 8 * 64 or len(cells) != 3 * 466:
-        raise ValueError("map_prior.c is not prior 1")
-    return shaped(iter(weights), 6, 8, 64), shaped(iter(cells), 3, 466)
+    """T by kind and table, and the contexts' starts: alone, near, against a reference."""
+    text = (SOURCE / "firmware/codec/map_prior.c").read_text("ascii")
+    parts = re.findall(r"\.weights = (.*?)\.cells = (.*?)\n};", text, re.DOTALL)
+    alone, against = ([[int(number) for number in re.findall(r"-?\d+", part)] for part in pair] for pair in parts)
+    if [len(part) for part in alone + against] != [6 * 5 * 64, 2 * 466, 6 * 3 * 64, 466]:
+        raise ValueError("map_prior.c does not hold what the document says")
+    tables = [first + more for first, more in zip(shaped(iter(alone[0]), 6, 5, 64), shaped(iter(against[0]), 6, 3, 64))]
+    return tables, shaped(iter(alone[1] + against[1]), 3, 466)
 
 
 class MapDecoder:
@@ -175,12 +176,16 @@ class MapDecoder:
         self.none = self.label_of(INVALID)
         self.last = self.labels // 4
         self.map = {}
-        self.reference = {(x, y): self.label_of(reference[y][x]) for y in range(self.height)
+        self.reference = {(x, y): self.reference_label(reference[y][x]) for y in range(self.height)
                           for x in range(self.width)} if self.mode else {}
         cells = iter(self.CELLS[2 if self.mode else self.near])
         self.flat, self.candidate, self.invalid = shaped(cells, 48), shaped(cells, 6, 32), shaped(cells, 16, 6)
         self.predicted, self.sign = shaped(cells, 6, 6), shaped(cells, 27)
         self.nearer, self.farther, self.half = shaped(cells, 4, 12), shaped(cells, 9), shaped(cells, 10)
+
+    def reference_label(self, value):
+        label = self.label_of(value)
+        return label if label < self.labels else self.none
 
     def label_of(self, d_q4):
         return (d_q4 >> self.step_log2) & 0x7FFF

@@ -55,8 +55,8 @@ inline Bytes code_map(const DecodedMap &map)
     std::vector<std::uint16_t> scratch(TSR_MAP_SCRATCH_COUNT(map.info.width));
     const auto encoder = std::make_unique<tsr_map_encoder>();
     std::size_t len = 0;
-    require_ok(tsr_map_encode_start(encoder.get(), &map.info, nullptr, bytes.data(), bytes.size(), scratch.data(),
-                                    scratch.size()));
+    require_ok(
+        tsr_map_encode_start(encoder.get(), &map.info, bytes.data(), bytes.size(), scratch.data(), scratch.size()));
     require_ok(tsr_map_encode_rows(encoder.get(), map.disparity_q4.data(), map.info.width, map.info.height));
     require_ok(tsr_map_encode_finish(encoder.get(), &len));
     bytes.resize(len);

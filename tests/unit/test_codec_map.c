@@ -35,7 +35,7 @@ void tearDown(void) {}
 
 static enum tsr_status start(size_t cap)
 {
-    return tsr_map_encode_start(&encoder, &info, NULL, out, cap, scratch, SCRATCH_COUNT);
+    return tsr_map_encode_start(&encoder, &info, out, cap, scratch, SCRATCH_COUNT);
 }
 
 static size_t encode(void)
@@ -88,18 +88,17 @@ static void test_length_of_literals(void)
 static void check_bad_info(struct tsr_map_info bad)
 {
     TEST_ASSERT_EQUAL(0, tsr_map_encoded_len_max(&bad));
-    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_start(&encoder, &bad, NULL, out, OUT_CAP, scratch, SCRATCH_COUNT));
+    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_start(&encoder, &bad, out, OUT_CAP, scratch, SCRATCH_COUNT));
     TEST_ASSERT_EACH_EQUAL_HEX8(0xa5, out, sizeof out);
 }
 
 static void test_start_refuses(void)
 {
-    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_start(NULL, &info, NULL, out, OUT_CAP, scratch, SCRATCH_COUNT));
-    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_start(&encoder, NULL, NULL, out, OUT_CAP, scratch, SCRATCH_COUNT));
-    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_start(&encoder, &info, NULL, NULL, OUT_CAP, scratch, SCRATCH_COUNT));
-    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_start(&encoder, &info, NULL, out, OUT_CAP, NULL, SCRATCH_COUNT));
-    TEST_ASSERT_EQUAL(TSR_ERR_NOBUF,
-                      tsr_map_encode_start(&encoder, &info, NULL, out, OUT_CAP, scratch, SCRATCH_COUNT - 1));
+    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_start(NULL, &info, out, OUT_CAP, scratch, SCRATCH_COUNT));
+    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_start(&encoder, NULL, out, OUT_CAP, scratch, SCRATCH_COUNT));
+    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_start(&encoder, &info, NULL, OUT_CAP, scratch, SCRATCH_COUNT));
+    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_start(&encoder, &info, out, OUT_CAP, NULL, SCRATCH_COUNT));
+    TEST_ASSERT_EQUAL(TSR_ERR_NOBUF, tsr_map_encode_start(&encoder, &info, out, OUT_CAP, scratch, SCRATCH_COUNT - 1));
     TEST_ASSERT_EQUAL(TSR_ERR_NOBUF, start(TSR_MAP_HEADER_LEN - 1));
     TEST_ASSERT_EACH_EQUAL_HEX8(0xa5, out, sizeof out);
     TEST_ASSERT_EQUAL(TSR_OK, start(TSR_MAP_HEADER_LEN));
@@ -165,8 +164,7 @@ static void test_bad_value_loses_the_map(void)
             const uint16_t kept = *place;
             size_t len = 77;
             *place = bad_values[i / shape.width];
-            TEST_ASSERT_EQUAL(TSR_OK,
-                              tsr_map_encode_start(&encoder, &shape, NULL, out, OUT_CAP, scratch, SCRATCH_COUNT));
+            TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_start(&encoder, &shape, out, OUT_CAP, scratch, SCRATCH_COUNT));
             TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_rows(&encoder, map, WIDTH, 2));
             *place = kept;
             TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_encode_rows(&encoder, map, WIDTH, 1));
@@ -265,7 +263,7 @@ static void test_near(void)
     struct tsr_map_info near = info;
     near.near = 1;
     size_t len = 0;
-    TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_start(&encoder, &near, NULL, out, OUT_CAP, scratch, SCRATCH_COUNT));
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_start(&encoder, &near, out, OUT_CAP, scratch, SCRATCH_COUNT));
     TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_rows(&encoder, map, WIDTH, HEIGHT));
     TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_finish(&encoder, &len));
     TEST_ASSERT_EQUAL_HEX8(0x1a, out[1]);
@@ -290,7 +288,8 @@ static void test_against_a_reference(void)
         earlier[i / WIDTH * (WIDTH + 3) + i % WIDTH] = i % WIDTH == 13 ? TSR_DISPARITY_INVALID : map[i];
     }
     size_t len = 0;
-    TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_start(&encoder, &info, &against, out, OUT_CAP, scratch, SCRATCH_COUNT));
+    TEST_ASSERT_EQUAL(TSR_OK,
+                      tsr_map_encode_start_against(&encoder, &info, &against, out, OUT_CAP, scratch, SCRATCH_COUNT));
     TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_rows(&encoder, map, WIDTH, HEIGHT));
     TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_finish(&encoder, &len));
     TEST_ASSERT_LESS_THAN(alone_len, len);
@@ -301,16 +300,15 @@ static void test_against_a_reference(void)
 
     TEST_ASSERT_EQUAL(TSR_ERR_NOREF, tsr_map_decode_start(&decoder, out, len, NULL, scratch, SCRATCH_COUNT, &read));
     against.id++;
-    TEST_ASSERT_EQUAL(TSR_ERR_NOREF,
-                      tsr_map_decode_start(&decoder, out, len, &against, scratch, SCRATCH_COUNT, &read));
+    TEST_ASSERT_EQUAL(TSR_ERR_NOREF, tsr_map_decode_start(&decoder, out, len, &against, scratch, SCRATCH_COUNT, &read));
     against.id--;
     against.stride = WIDTH - 1;
     TEST_ASSERT_EQUAL(TSR_ERR_SIZE, tsr_map_decode_start(&decoder, out, len, &against, scratch, SCRATCH_COUNT, &read));
     TEST_ASSERT_EQUAL(TSR_ERR_SIZE,
-                      tsr_map_encode_start(&encoder, &info, &against, out, OUT_CAP, scratch, SCRATCH_COUNT));
+                      tsr_map_encode_start_against(&encoder, &info, &against, out, OUT_CAP, scratch, SCRATCH_COUNT));
     against.map = NULL;
     TEST_ASSERT_EQUAL(TSR_ERR_ARG,
-                      tsr_map_encode_start(&encoder, &info, &against, out, OUT_CAP, scratch, SCRATCH_COUNT));
+                      tsr_map_encode_start_against(&encoder, &info, &against, out, OUT_CAP, scratch, SCRATCH_COUNT));
     TEST_ASSERT_EQUAL(TSR_ERR_FORMAT, tsr_map_read_info(out, TSR_MAP_HEADER_LEN, &read));
     TEST_ASSERT_EQUAL(77, read.width);
     TEST_ASSERT_EQUAL(TSR_OK, tsr_map_read_info(out, TSR_MAP_HEADER_LEN_MAX, &read));

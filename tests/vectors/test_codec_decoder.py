@@ -73,9 +73,11 @@ def encode(kind, info, pixels, against=None):
     scratch = np.zeros(3 * (info.width + 5), pixels.dtype)
     length = ctypes.c_size_t(0)
     size = ctypes.c_size_t
-    status = getattr(LIB, f"tsr_{kind}_encode_start")(pointer(state), ctypes.byref(info),
-                                                      *reference_argument(kind, against), pointer(out), size(out.size),
-                                                      pointer(scratch), size(scratch.size))
+    buffers = pointer(out), size(out.size), pointer(scratch), size(scratch.size)
+    if against is None:
+        status = getattr(LIB, f"tsr_{kind}_encode_start")(pointer(state), ctypes.byref(info), *buffers)
+    else:
+        status = LIB.tsr_map_encode_start_against(pointer(state), ctypes.byref(info), ctypes.byref(against), *buffers)
     assert status == OK, status
     status = getattr(LIB, f"tsr_{kind}_encode_rows")(pointer(state), pointer(pixels), size(info.width), info.height)
     assert status == OK, status

@@ -7,6 +7,7 @@
 
 #include "tsr/codec/gray.h"
 #include "tsr/codec/map.h"
+#include "tsr/codec/picture.h"
 #include "tsr/codec/view.h"
 #include "tsr/vision/prefilter.h"
 #include "tsr/vision/quantise.h"
@@ -16,12 +17,16 @@
 #define STEP_LOG2_WHOLE 4u /* whole pixels, as other codecs are compared */
 #define D0_Q4 (-37)
 #define REFERENCE_NEAR 4u
+#define PICTURE_STEP 34u
 
 static struct tsr_gray_encoder gray_encoder;
 static struct tsr_gray_decoder gray_decoder;
+static struct tsr_picture_encoder picture_encoder;
+static struct tsr_picture_decoder picture_decoder;
 static struct tsr_map_encoder map_encoder;
 static struct tsr_map_decoder map_decoder;
 static uint8_t gray_scratch[TSR_GRAY_SCRATCH_LEN(WORKBENCH_WIDTH_MAX)];
+static uint8_t picture_scratch[TSR_PICTURE_SCRATCH_LEN(WORKBENCH_WIDTH_MAX)];
 static uint16_t map_scratch[TSR_MAP_SCRATCH_COUNT(WORKBENCH_WIDTH_MAX)];
 static uint8_t gray_coded[TSR_GRAY_ENCODED_LEN_MAX(WORKBENCH_WIDTH_MAX, WORKBENCH_HEIGHT_MAX)];
 static uint8_t gray_decoded[WORKBENCH_PIXELS_MAX];
@@ -83,6 +88,37 @@ void workbench_run_gray(const struct workbench_case *bench, const uint8_t *left,
     workbench_store("reference_coded.out", gray_coded, len);
     decode_gray(bench, len, "gray_decode_reference");
     workbench_store("reference_decoded.out", gray_decoded, pixels);
+}
+
+void workbench_run_picture(const struct workbench_case *bench, const uint8_t *left)
+{
+    const size_t pixels = (size_t)bench->width * bench->height;
+    struct tsr_picture_info info = {bench->width, bench->height, PICTURE_STEP, TSR_PICTURE_PRIOR_TRAINED};
+    size_t len = 0;
+    workbench_begin();
+    enum tsr_status status = tsr_picture_encode_start(&picture_encoder, &info, 0, gray_coded, sizeof gray_coded,
+                                                      picture_scratch, sizeof picture_scratch);
+    for (unsigned row = 0; row < bench->height && status >= TSR_OK; row += ROWS_PER_STEP) {
+        status =
+            tsr_picture_encode_rows(&picture_encoder, left + (size_t)row * bench->width, bench->width, ROWS_PER_STEP);
+    }
+    if (status == TSR_OK) {
+        status = tsr_picture_encode_finish(&picture_encoder, &len);
+    }
+    workbench_end("picture_encode", pixels);
+    workbench_expect(status == TSR_OK, "picture encode");
+    workbench_store("picture_coded.out", gray_coded, len);
+
+    workbench_begin();
+    status =
+        tsr_picture_decode_start(&picture_decoder, gray_coded, len, picture_scratch, sizeof picture_scratch, &info);
+    for (unsigned row = 0; row < bench->height && status >= TSR_OK; row += ROWS_PER_STEP) {
+        status = tsr_picture_decode_rows(&picture_decoder, gray_decoded + (size_t)row * bench->width, bench->width,
+                                         ROWS_PER_STEP);
+    }
+    workbench_end("picture_decode", pixels);
+    workbench_expect(status == TSR_OK, "picture decode");
+    workbench_store("picture_decoded.out", gray_decoded, pixels);
 }
 
 static void prefilter_view(const struct workbench_case *bench, const uint8_t *right)
@@ -176,8 +212,7 @@ static size_t code_map(const struct workbench_case *bench, const uint16_t *map, 
                                 .d0_q4 = D0_Q4};
     size_t len = 0;
     workbench_begin();
-    enum tsr_status status =
-        tsr_map_encode_start(&map_encoder, &info, NULL, coded, coded_cap, map_scratch, scratch_count);
+    enum tsr_status status = tsr_map_encode_start(&map_encoder, &info, coded, coded_cap, map_scratch, scratch_count);
     for (unsigned row = 0; row < bench->height && status >= TSR_OK; row += ROWS_PER_STEP) {
         status = tsr_map_encode_rows(&map_encoder, map + (size_t)row * bench->width, bench->width, ROWS_PER_STEP);
     }

@@ -235,6 +235,7 @@ void workbench_run(const struct workbench_case *bench)
     run_change(bench, pixels);
     workbench_run_gray(bench, left, right);
     const uint8_t *seen = workbench_run_view(bench, left, right);
+    workbench_run_picture(bench, left);
     workbench_run_rectify(bench, left);
     run_match(bench, pixels);
     run_compare(bench, pixels);

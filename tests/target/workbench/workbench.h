@@ -52,6 +52,7 @@ void workbench_run_refinements(const struct workbench_case *bench, const uint16_
 void workbench_run_gray(const struct workbench_case *bench, const uint8_t *left, const uint8_t *right);
 /* Gives the right view as a lead has it, coarse and prefiltered. */
 const uint8_t *workbench_run_view(const struct workbench_case *bench, const uint8_t *left, const uint8_t *right);
+void workbench_run_picture(const struct workbench_case *bench, const uint8_t *left);
 size_t workbench_run_map(const struct workbench_case *bench, const uint16_t *map, uint8_t *coded, size_t coded_cap);
 void workbench_run_rectify(const struct workbench_case *bench, const uint8_t *view);
 void workbench_run_seals(const uint8_t *text, size_t text_len);

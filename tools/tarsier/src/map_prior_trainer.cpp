@@ -130,6 +130,43 @@ MapPrior MapPriorTrainer::train() const
     return prior;
 }
 
+namespace
+{
+
+constexpr std::size_t kLineLength = 118;
+
+void append_numbers(std::string &text, const auto &numbers)
+{
+    std::string line = "           ";
+    for (const auto number : numbers) {
+        const std::string word = fmt::format(" {},", number);
+        if (line.size() + word.size() > kLineLength) {
+            text += line + "\n";
+            line = "           ";
+        }
+        line += word;
+    }
+    text += line + "\n";
+}
+
+/* Tables first .. end - 1 of every kind. */
+void append_weights(std::string &text, const MapPrior &prior, std::size_t first, std::size_t end)
+{
+    text += "    .weights = {\n";
+    for (const MapPrior::Weights &kind : prior.weights) {
+        text += "        {\n";
+        for (std::size_t table = first; table < end; table++) {
+            text += "          {\n";
+            append_numbers(text, kind[table]);
+            text += "          },\n";
+        }
+        text += "        },\n";
+    }
+    text += "    },\n";
+}
+
+} // namespace
+
 std::string map_prior_source(const MapPrior &prior, unsigned id, std::uint16_t matcher_crc)
 {
     std::string text =
@@ -137,35 +174,19 @@ std::string map_prior_source(const MapPrior &prior, unsigned id, std::uint16_t m
                     "train again, do not edit.\n *\n * SPDX-License-Identifier: Apache-2.0\n */\n"
                     "#include \"map_model.h\"\n\n/* clang-format off */\n"
                     "const struct tsr_map_prior tsr_map_prior = {{\n    .id = {},\n"
-                    "    .matcher_crc = 0x{:04x},\n    .weights = {{\n",
+                    "    .matcher_crc = 0x{:04x},\n",
                     id, matcher_crc);
-    const auto append_numbers = [&text](const auto &numbers, const char *indent) {
-        std::string line = indent;
-        for (const auto number : numbers) {
-            const std::string word = fmt::format("{},", number);
-            if (line.size() + word.size() > 118) {
-                text += line + "\n";
-                line = indent;
-            }
-            line += word;
-        }
-        text += line + "\n";
-    };
-    for (const MapPrior::Weights &kind : prior.weights) {
+    append_weights(text, prior, 0, TSR_MAP_TABLE_COUNT_ALONE);
+    text += "    .cells = {\n";
+    for (std::size_t coding = 0; coding < TSR_MAP_CODING_REFERENCE; coding++) {
         text += "        {\n";
-        for (const auto &table : kind) {
-            text += "            {\n";
-            append_numbers(table, "                ");
-            text += "            },\n";
-        }
+        append_numbers(text, prior.cells[coding]);
         text += "        },\n";
     }
-    text += "    },\n    .cells = {\n";
-    for (const auto &cells : prior.cells) {
-        text += "        {\n";
-        append_numbers(cells, "            ");
-        text += "        },\n";
-    }
+    text += "    },\n};\n\nconst struct tsr_map_reference_prior tsr_map_reference_prior = {\n";
+    append_weights(text, prior, TSR_MAP_TABLE_COUNT_ALONE, TSR_MAP_TABLE_COUNT);
+    text += "    .cells = {\n";
+    append_numbers(text, prior.cells[TSR_MAP_CODING_REFERENCE]);
     return text + "    },\n};\n";
 }
 

@@ -55,7 +55,7 @@ struct tsr_map_info {
     uint8_t step_log2;     /* step = 2^step_log2 sixteenths of a px, 0 .. 4; the product sends 3 (1/2 px) */
     uint8_t near;          /* largest error of a decoded disparity, steps, 0 .. TSR_MAP_NEAR_MAX */
     int16_t d0_q4;         /* the pair's offset, px, Q12.4, signed; carried, not used */
-    bool has_reference;    /* coded against the map of reference_id; _encode_start sets both from its reference */
+    bool has_reference;    /* coded against the map of reference_id; an encoder does not read these two */
     uint16_t reference_id; /* what sender and receiver call that map */
 };
 
@@ -115,6 +115,7 @@ struct tsr_map_encoder {
     struct tsr_map_model model;
     struct tsr_range_encoder range;
     enum tsr_status status; /* TSR_ERR_ARG is sticky */
+    void (*code_row)(struct tsr_map_model *model, struct tsr_range_encoder *range);
     uint8_t header_len;
 };
 
@@ -128,22 +129,24 @@ struct tsr_map_decoder {
 size_t tsr_map_encoded_len_max(const struct tsr_map_info *info);
 
 /*
- * Begin a map: writes the header.
+ * Begin a map that is coded alone, or against a reference: writes the header.
  *
  *   info         in, copied, but for has_reference and reference_id
- *   reference    NULL, or the map to code against; it must be one that a decoder will have bit by bit (with near > 0:
- *                the decoded one). With stride < width TSR_ERR_SIZE
+ *   reference    the map to code against; it must be one that a decoder will have bit by bit (with near > 0: the
+ *                decoded one). Disparities that this map cannot have count as no match
  *   out          [out_cap] filled until _finish; tsr_map_encoded_len_max bytes always suffice, a typical map
- *                at 1/4 px takes a tenth of that
+ *                at 1/2 px takes a fifteenth of that
  *   scratch      [scratch_cap] kept; scratch_cap >= TSR_MAP_SCRATCH_COUNT(width)
  *
- * Returns TSR_OK; TSR_ERR_ARG for a null pointer or an info field out of range;
- * TSR_ERR_NOBUF if scratch_cap or out_cap (< the header) is too small.
- * On error nothing is touched.
+ * Returns TSR_OK; TSR_ERR_ARG for a null pointer or an info field out of range; TSR_ERR_SIZE for a reference's
+ * stride < width; TSR_ERR_NOBUF if scratch_cap or out_cap (< the header) is too small. On error nothing is
+ * touched. Who never calls the second links no table for it.
  */
-enum tsr_status tsr_map_encode_start(struct tsr_map_encoder *encoder, const struct tsr_map_info *info,
-                                     const struct tsr_map_reference *reference, uint8_t *out, size_t out_cap,
-                                     uint16_t *scratch, size_t scratch_cap);
+enum tsr_status tsr_map_encode_start(struct tsr_map_encoder *encoder, const struct tsr_map_info *info, uint8_t *out,
+                                     size_t out_cap, uint16_t *scratch, size_t scratch_cap);
+enum tsr_status tsr_map_encode_start_against(struct tsr_map_encoder *encoder, const struct tsr_map_info *info,
+                                             const struct tsr_map_reference *reference, uint8_t *out, size_t out_cap,
+                                             uint16_t *scratch, size_t scratch_cap);
 
 /*
  * Code the next row_count rows.
