@@ -218,7 +218,7 @@ static void run_lead(const struct workbench_case *bench, size_t pixels, const ui
             tsr_match_run(&match, UINT16_MAX) == TSR_OK &&
             tsr_median_start(&median, bench->width, bench->height, map, pixels, scratch, sizeof scratch) == TSR_OK &&
             tsr_median_run(&median, UINT16_MAX) == TSR_OK &&
-            tsr_quantise(map, pixels, STEP_LOG2, bench->disparities) == TSR_OK,
+            tsr_quantise(map, pixels, WORKBENCH_STEP_LOG2, bench->disparities) == TSR_OK,
         "a lead's map");
     workbench_store("lead_map.out", map, pixels * sizeof *map);
 }
