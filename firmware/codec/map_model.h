@@ -80,6 +80,9 @@ enum tsr_status tsr_map_model_start(struct tsr_map_model *model, const struct ts
 
 bool tsr_map_is_valid_info(const struct tsr_map_info *info);
 
+/* Is it invalid, or a multiple of the step below 16 * disparities? */
+bool tsr_map_is_valid_value(const struct tsr_map_info *info, unsigned value);
+
 /* Put a row of disparities, as labels, into row model->row of the scratch; false if one is neither invalid nor a
  * multiple of the step below 16 * disparities. */
 bool tsr_map_take_row(struct tsr_map_model *model, const uint16_t *row);
@@ -92,5 +95,9 @@ void tsr_map_encode_reference_row(struct tsr_map_model *model, struct tsr_range_
 /* Decode row model->row into the scratch and step to the next; false if it meets a label that does not exist. */
 bool tsr_map_decode_row(struct tsr_map_model *model, struct tsr_range_decoder *range);
 bool tsr_map_decode_reference_row(struct tsr_map_model *model, struct tsr_range_decoder *range);
+
+/* Columns first .. end - 1 of row model->row alone, from the left; the caller steps. */
+void tsr_map_encode_span(struct tsr_map_model *model, struct tsr_range_encoder *range, unsigned first, unsigned end);
+bool tsr_map_decode_span(struct tsr_map_model *model, struct tsr_range_decoder *range, unsigned first, unsigned end);
 
 #endif
