@@ -89,7 +89,7 @@ class Maps:
 
 def train(maps, family, work):
     """The codec with a prior learned from the other families."""
-    import map_library
+    import codec_library
     import map_quality
     folder = work / family
     for name, kind in (("alone", maps.alone), ("turned", maps.turned), ("smooth", maps.smooth)):
@@ -103,7 +103,7 @@ def train(maps, family, work):
     source = work / f"{family}.c"
     board.run([RELEASE / "bin/tarsier", "train-prior", *sorted(folder.iterdir()), "-o", source, "--step",
                *TRAINED_STEPS], timeout_s=900)
-    return map_library.build(source, work / f"{family}.so")
+    return codec_library.build(source, work / f"{family}.so")
 
 
 def write_map(map_quality, path, disparity_map, np):

@@ -29,6 +29,13 @@ struct DecodedMap {
 std::optional<DecodedMap> decode_map(std::span<const std::uint8_t> coded);
 std::optional<GrayImage> decode_reference(std::span<const std::uint8_t> coded);
 
+/*
+ * What is known of the disparities that map was rounded from (tsr/codec/map_restore.h): for geometry and pictures. What
+ * is stored, and compared with other maps, stays as it was sent. Throws std::invalid_argument for what decode_map
+ * does not give.
+ */
+DecodedMap restored(const DecodedMap &map);
+
 } // namespace tsr
 
 #endif
