@@ -77,8 +77,8 @@ void set_up_camera(tsr_node_config &config, const SiteNode &node, const SitePair
     config.similarity.height = height;
     config.d0_q4 = static_cast<std::int16_t>(std::lround(pair.d0_px * kDisparityOne));
     config.step_log2 = static_cast<std::uint8_t>(std::lround(std::log2(pair.step_px * kDisparityOne)));
-    config.reference_near =
-        pair.reference_image ? static_cast<std::uint8_t>(pair.reference_near) : std::uint8_t{TSR_REFERENCE_NONE};
+    config.reference_step =
+        pair.reference_image ? static_cast<std::uint8_t>(pair.reference_step) : std::uint8_t{TSR_REFERENCE_NONE};
 }
 
 } // namespace

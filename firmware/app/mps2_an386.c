@@ -34,7 +34,7 @@
 #define HEIGHT 120
 #define DISPARITIES 32
 #define STEP_LOG2 3 /* 1/2 px */
-#define REFERENCE_NEAR 4
+#define REFERENCE_STEP 35
 #define D0_Q4 539 /* of the demo's pair, 33.6875 px */
 
 #define PAN_ID 0xbeef
@@ -121,7 +121,7 @@ static struct tsr_node_config config_of(enum tsr_role role, uint16_t address)
     config.similarity.width = WIDTH;
     config.similarity.height = HEIGHT;
     config.step_log2 = STEP_LOG2;
-    config.reference_near = REFERENCE_NEAR;
+    config.reference_step = REFERENCE_STEP;
     config.d0_q4 = D0_Q4;
     return config;
 }

@@ -107,30 +107,38 @@ static void start_matching(struct tsr_node *node)
     enter(node, TSR_PHASE_MATCHING);
 }
 
+/* A picture is coded in bands: a quantum is whole ones. */
+static uint16_t rows_of_bands(const struct tsr_node *node, unsigned left)
+{
+    unsigned rows = (rows_of_step(node, left) + TSR_PICTURE_BLOCK - 1u) / TSR_PICTURE_BLOCK * TSR_PICTURE_BLOCK;
+    return (uint16_t)(rows < left ? rows : left);
+}
+
 /* The reference image is coded before matching consumes the view. */
 static struct work code_reference(struct tsr_node *node)
 {
     struct tsr_gray view = tsr_node_left_view(node);
-    struct tsr_gray_encoder *encoder = (struct tsr_gray_encoder *)(void *)node->scratch;
-    if (node->config.reference_near == TSR_REFERENCE_NONE) {
+    struct tsr_picture_encoder *encoder = (struct tsr_picture_encoder *)(void *)node->scratch;
+    if (node->config.reference_step == TSR_REFERENCE_NONE) {
         node->reference_len = 0;
         start_matching(node);
         return no_work();
     }
     if (node->row == 0) {
-        const struct tsr_gray_info info = {view.width, view.height, node->config.reference_near};
+        const struct tsr_picture_info info = {view.width, view.height, node->config.reference_step,
+                                              TSR_PICTURE_PRIOR_TRAINED};
         size_t in_front = TSR_MESSAGE_HEADER_LEN + TSR_BODY_MAP_HEADER_LEN;
-        (void)tsr_gray_encode_start(encoder, &info, node->message + in_front,
-                                    node->message_cap - in_front - TSR_CCM_TAG_LEN, node->scratch + sizeof *encoder,
-                                    node->scratch_cap - sizeof *encoder);
+        (void)tsr_picture_encode_start(encoder, &info, 0, node->message + in_front,
+                                       node->message_cap - in_front - TSR_CCM_TAG_LEN, node->scratch + sizeof *encoder,
+                                       node->scratch_cap - sizeof *encoder);
     }
-    uint16_t rows = rows_of_step(node, (unsigned)view.height - node->row);
+    uint16_t rows = rows_of_bands(node, (unsigned)view.height - node->row);
     enum tsr_status status =
-        tsr_gray_encode_rows(encoder, view.pixels + (size_t)node->row * view.stride, view.stride, rows);
+        tsr_picture_encode_rows(encoder, view.pixels + (size_t)node->row * view.stride, view.stride, rows);
     node->row = (uint16_t)(node->row + rows);
     if (status != TSR_AGAIN) {
         size_t len = 0;
-        if (status != TSR_OK || tsr_gray_encode_finish(encoder, &len) != TSR_OK) {
+        if (status != TSR_OK || tsr_picture_encode_finish(encoder, &len) != TSR_OK) {
             node->counters.references_omitted++;
         }
         node->reference_len = len;

@@ -90,8 +90,8 @@ static const char *bad_camera_field(const struct tsr_node_config *config)
     if (config->step_log2 > STEP_LOG2_MAX) {
         return "step_log2";
     }
-    if (config->reference_near > TSR_GRAY_NEAR_MAX && config->reference_near != TSR_REFERENCE_NONE) {
-        return "reference_near";
+    if (config->reference_step > TSR_PICTURE_STEP_MAX && config->reference_step != TSR_REFERENCE_NONE) {
+        return "reference_step";
     }
     return NULL;
 }
@@ -128,16 +128,16 @@ static struct tsr_map_info map_info_of(const struct tsr_node_config *config)
     return info;
 }
 
-/* A map with its reference image at their usual sizes: the larger of the two
- * worst cases. What exceeds it goes without the reference image. */
+/* A map of any content has room. So has a usual map with its reference image,
+ * which take a part of that; what exceeds it goes without the reference image. */
 static size_t message_region_len(const struct tsr_node_config *config)
 {
     struct tsr_map_info info = map_info_of(config);
-    size_t gray_len = TSR_GRAY_ENCODED_LEN_MAX(config->match.width, config->match.height);
-    size_t view_len = TSR_VIEW_ENCODED_LEN_MAX(config->match.width, config->match.height);
-    size_t body_len = config->role == TSR_ROLE_WING
-                          ? TSR_BODY_VIEW_HEADER_LEN + view_len
-                          : TSR_BODY_MAP_HEADER_LEN + larger(gray_len, tsr_map_encoded_len_max(&info));
+    size_t view_len = TSR_BODY_VIEW_HEADER_LEN + TSR_VIEW_ENCODED_LEN_MAX(config->match.width, config->match.height);
+    size_t map_len = TSR_BODY_MAP_HEADER_LEN + tsr_map_encoded_len_max(&info);
+    size_t body_len = config->role == TSR_ROLE_WING   ? view_len
+                      : config->role == TSR_ROLE_LEAD ? larger(view_len, map_len)
+                                                      : map_len;
     return smaller(body_len, TSR_CCM_TEXT_MAX) + TSR_MESSAGE_OVERHEAD_LEN;
 }
 
@@ -149,11 +149,12 @@ static size_t scratch_region_len(const struct tsr_node_config *config)
                           TSR_VIEW_SCRATCH_LEN(width),
                       TSR_PREFILTER_SCRATCH_LEN(width));
     }
-    size_t gray_encode = sizeof(struct tsr_gray_encoder) + TSR_GRAY_SCRATCH_LEN(width);
+    size_t picture_encode = sizeof(struct tsr_picture_encoder) + TSR_PICTURE_SCRATCH_LEN(width);
     size_t view_decode = sizeof(struct tsr_view_decoder) + TSR_VIEW_SCRATCH_LEN(width);
     size_t map_encode = sizeof(struct tsr_map_encoder) + sizeof(uint16_t) * TSR_MAP_SCRATCH_COUNT(width);
     size_t match = tsr_match_scratch_len(&config->match);
-    return larger(larger(gray_encode, view_decode), larger(larger(map_encode, match), TSR_MEDIAN_SCRATCH_LEN(width)));
+    return larger(larger(picture_encode, view_decode),
+                  larger(larger(map_encode, match), TSR_MEDIAN_SCRATCH_LEN(width)));
 }
 
 enum tsr_status tsr_node_plan_memory(const struct tsr_node_config *config, struct tsr_memory_plan *plan)

@@ -6,8 +6,8 @@
 #include <string>
 
 extern "C" {
-#include "tsr/codec/gray.h"
 #include "tsr/codec/map_restore.h"
+#include "tsr/codec/picture.h"
 }
 
 namespace tsr
@@ -33,17 +33,17 @@ std::optional<DecodedMap> decode_map(std::span<const std::uint8_t> coded)
 
 std::optional<GrayImage> decode_reference(std::span<const std::uint8_t> coded)
 {
-    tsr_gray_info info{};
-    if (tsr_gray_read_info(coded.data(), coded.size(), &info) != TSR_OK) {
+    tsr_picture_info info{};
+    if (tsr_picture_read_info(coded.data(), coded.size(), &info) != TSR_OK || info.prior != TSR_PICTURE_PRIOR_TRAINED) {
         return std::nullopt;
     }
     const std::size_t width = info.width;
     GrayImage image{info.width, info.height, std::vector<std::uint8_t>(width * info.height)};
-    std::vector<std::uint8_t> scratch(TSR_GRAY_SCRATCH_LEN(width));
-    const auto decoder = std::make_unique<tsr_gray_decoder>();
-    if (tsr_gray_decode_start(decoder.get(), coded.data(), coded.size(), scratch.data(), scratch.size(), &info) !=
+    std::vector<std::uint8_t> scratch(TSR_PICTURE_SCRATCH_LEN(width));
+    const auto decoder = std::make_unique<tsr_picture_decoder>();
+    if (tsr_picture_decode_start(decoder.get(), coded.data(), coded.size(), scratch.data(), scratch.size(), &info) !=
             TSR_OK ||
-        tsr_gray_decode_rows(decoder.get(), image.pixels.data(), width, info.height) != TSR_OK) {
+        tsr_picture_decode_rows(decoder.get(), image.pixels.data(), width, info.height) != TSR_OK) {
         return std::nullopt;
     }
     return image;

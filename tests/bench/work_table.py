@@ -24,7 +24,7 @@ KINDS = {
     "map_encode": (("map_encode",), "pixel"),
     "view_filter": (("view_prefilter", "view_compare"), "pixel"),
     "view_encode": (("view_encode",), "pixel"),
-    "reference_encode": (("gray_encode_reference",), "pixel"),
+    "reference_encode": (("picture_encode",), "pixel"),
     "view_decode": (("view_decode",), "pixel"),
     "seal": (("seal_message", "open_message", "seal_frame", "open_frame"), "byte"),
     "copy": (("copy",), "byte"),

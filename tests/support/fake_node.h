@@ -59,7 +59,7 @@ static inline struct tsr_node_config fake_config(enum tsr_role role)
     config.match.disparities = 16;
     config.match.window = 5;
     config.step_log2 = 3;
-    config.reference_near = 4;
+    config.reference_step = 35;
     switch (role) {
     case TSR_ROLE_GATEWAY:
         config.routes.parent = TSR_ADDRESS_NONE;

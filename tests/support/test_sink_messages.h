@@ -18,8 +18,8 @@
 #include "tsr/sink/decoded_map.h"
 
 extern "C" {
-#include "tsr/codec/gray.h"
 #include "tsr/codec/map.h"
+#include "tsr/codec/picture.h"
 #include "tsr/wire/body.h"
 #include "tsr/wire/link.h"
 }
@@ -63,21 +63,24 @@ inline Bytes code_map(const DecodedMap &map)
     return bytes;
 }
 
-inline Bytes code_reference(const GrayImage &image)
+/* As finely as pictures are coded, as nodes send them. */
+inline Bytes code_reference(const GrayImage &image, std::uint8_t prior = TSR_PICTURE_PRIOR_TRAINED)
 {
-    const tsr_gray_info info{static_cast<std::uint16_t>(image.width), static_cast<std::uint16_t>(image.height), 0};
-    Bytes bytes(tsr_gray_encoded_len_max(&info));
-    Bytes scratch(TSR_GRAY_SCRATCH_LEN(info.width));
-    const auto encoder = std::make_unique<tsr_gray_encoder>();
+    const tsr_picture_info info{static_cast<std::uint16_t>(image.width), static_cast<std::uint16_t>(image.height), 0,
+                                prior};
+    Bytes bytes(tsr_picture_encoded_len_max(&info));
+    Bytes scratch(TSR_PICTURE_SCRATCH_LEN(info.width));
+    const auto encoder = std::make_unique<tsr_picture_encoder>();
     std::size_t len = 0;
-    require_ok(tsr_gray_encode_start(encoder.get(), &info, bytes.data(), bytes.size(), scratch.data(), scratch.size()));
-    require_ok(tsr_gray_encode_rows(encoder.get(), image.pixels.data(), info.width, info.height));
-    require_ok(tsr_gray_encode_finish(encoder.get(), &len));
+    require_ok(
+        tsr_picture_encode_start(encoder.get(), &info, 0, bytes.data(), bytes.size(), scratch.data(), scratch.size()));
+    require_ok(tsr_picture_encode_rows(encoder.get(), image.pixels.data(), info.width, info.height));
+    require_ok(tsr_picture_encode_finish(encoder.get(), &len));
     bytes.resize(len);
     return bytes;
 }
 
-/* A reference image that codes to several fragments. */
+/* A picture that codes to several fragments. */
 inline GrayImage textured_image(const SitePair &pair)
 {
     GrayImage image{pair.width, pair.height, {}};

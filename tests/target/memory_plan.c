@@ -91,7 +91,7 @@ int main(void)
     print_sizeof("tsr_reassembly", sizeof(struct tsr_reassembly));
     print_sizeof("tsr_uplink", sizeof(struct tsr_uplink));
     print_sizeof("tsr_map_encoder", sizeof(struct tsr_map_encoder));
-    print_sizeof("tsr_gray_encoder", sizeof(struct tsr_gray_encoder));
+    print_sizeof("tsr_picture_encoder", sizeof(struct tsr_picture_encoder));
     print_sizeof("tsr_view_encoder", sizeof(struct tsr_view_encoder));
     return failed;
 }

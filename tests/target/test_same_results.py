@@ -11,7 +11,8 @@ import tempfile
 import board
 import pictures
 
-RESULTS = ["change_result", "change_state", "gray_coded", "gray_decoded", "view_exact", "lead_map", "view_next", "view_coded", "view_decoded", "reference_coded", "reference_decoded",
+RESULTS = ["change_result", "change_state", "gray_coded", "gray_decoded", "view_exact", "lead_map", "view_next", "view_coded", "view_decoded", "near_coded",
+           "near_decoded",
            "picture_coded", "picture_decoded",
            "match", "match_sad8", "match_census", "match_smooth", "match_raw", "match_ssd", "median", "median5", "speckle", "fill", "gaussian3",
            "gaussian5", "diffusion", "quantise", "rectified", "similarity", "map_coded", "map_decoded", "message",

@@ -131,6 +131,16 @@ static void test_prior_of_contexts(void)
     TEST_ASSERT_EQUAL(60, bits[2].count);
 }
 
+/* No probability of the table is beyond what contexts learn: 2 .. 4094 in 2^-12. */
+static void test_prior_is_within_bounds(void)
+{
+    TEST_ASSERT_EQUAL(TSR_OK, tsr_picture_encode_start(&encoder, &info, 0, out, sizeof out, scratch, SCRATCH_LEN));
+    for (unsigned i = 0; i < TSR_PICTURE_CONTEXT_COUNT; i++) {
+        TEST_ASSERT_LESS_OR_EQUAL(4094u << 4, encoder.model.contexts[i].p_one_q16);
+        TEST_ASSERT_GREATER_OR_EQUAL(2u << 4, encoder.model.contexts[i].p_one_q16);
+    }
+}
+
 static void test_header_bytes(void)
 {
     info.step = 37;
@@ -277,6 +287,7 @@ int main(void)
     RUN_TEST(test_flat_picture_is_exact);
     RUN_TEST(test_target_is_met);
     RUN_TEST(test_prior_of_contexts);
+    RUN_TEST(test_prior_is_within_bounds);
     RUN_TEST(test_header_bytes);
     RUN_TEST(test_start_refuses_bad_info);
     RUN_TEST(test_start_refuses);

@@ -116,8 +116,8 @@ static void test_camera_fields(void)
         REFUSE(cameras[i], config.change.reduction = 3, "reduction");
         REFUSE(cameras[i], config.similarity.block_log2 = 5, "block_log2");
         REFUSE(cameras[i], config.step_log2 = 5, "step_log2");
-        REFUSE(cameras[i], config.reference_near = 8, "reference_near");
-        REFUSE(cameras[i], config.reference_near = 254, "reference_near");
+        REFUSE(cameras[i], config.reference_step = 64, "reference_step");
+        REFUSE(cameras[i], config.reference_step = 254, "reference_step");
     }
     REFUSE(TSR_ROLE_LEAD, config.watch_period_us = 0, "watch_period_us");
     REFUSE(TSR_ROLE_BINOCULAR, config.watch_period_us = 0, "watch_period_us");
@@ -125,7 +125,7 @@ static void test_camera_fields(void)
     config.watch_period_us = 0;
     TEST_ASSERT_EQUAL(TSR_OK, tsr_node_check(&config, NULL));
     config = fake_config(TSR_ROLE_LEAD);
-    config.reference_near = TSR_REFERENCE_NONE;
+    config.reference_step = TSR_REFERENCE_NONE;
     TEST_ASSERT_EQUAL(TSR_OK, tsr_node_check(&config, NULL));
 }
 

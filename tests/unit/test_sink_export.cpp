@@ -19,6 +19,8 @@ namespace
 
 using test::Folder;
 
+constexpr int kReferenceErrorMax = 8;
+
 StoredMap stored_of(const SitePair &pair, std::uint32_t counter, const DecodedMap &map, bool kept)
 {
     StoredMap stored;
@@ -76,7 +78,19 @@ TEST_F(SinkExport, WritesTheStatedFiles)
     EXPECT_NE(files.at("cloud.ply").find("element vertex 2304\n"), std::string::npos);
     EXPECT_EQ(read_pfm(folder / "out/maps/00003-0000000009.pfm").pixels[7], 4.0F);
     EXPECT_EQ(read_gray_image(folder / "out/maps/00003-0000000009-reference.png").pixels,
-              test::textured_image(site.pairs[0]).pixels);
+              decode_reference(test::code_reference(test::textured_image(site.pairs[0])))->pixels);
+}
+
+/* At the finest step the picture is the view's within a few levels of gray. */
+TEST_F(SinkExport, ReferenceIsNearTheView)
+{
+    const GrayImage view = test::textured_image(site.pairs[0]);
+    const auto reference = decode_reference(test::code_reference(view));
+    ASSERT_TRUE(reference.has_value());
+    ASSERT_EQ(reference->size(), view.size());
+    for (std::size_t i = 0; i < view.pixels.size(); i++) {
+        EXPECT_NEAR(reference->pixels[i], view.pixels[i], kReferenceErrorMax) << i;
+    }
 }
 
 TEST_F(SinkExport, NumbersAddUp)

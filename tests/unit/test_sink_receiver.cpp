@@ -8,6 +8,10 @@
 #include "test_sink_messages.h"
 #include "tsr/sink/receiver.h"
 
+extern "C" {
+#include "tsr/codec/gray.h"
+}
+
 namespace tsr
 {
 namespace
@@ -78,7 +82,7 @@ TEST_F(SinkReceiver, AWholeMapIsStoredThenCommitted)
     EXPECT_TRUE(stored->kept);
     EXPECT_EQ(stored->capture_time_us, 1000u);
     EXPECT_EQ(decode_map(stored->coded_map)->disparity_q4[5], 64);
-    EXPECT_EQ(decode_reference(stored->coded_reference)->pixels, test::textured_image(porch()).pixels);
+    EXPECT_EQ(stored->coded_reference, test::code_reference(test::textured_image(porch())));
     ASSERT_EQ(reports.size(), 1u);
     EXPECT_EQ(reports[0].pair, "porch");
 }
@@ -211,6 +215,10 @@ TEST_F(SinkReceiver, AuthenticButUselessMessagesAreRefused)
     refuse(3, 3, test::map_body(good_map, Bytes(50, 0xff)), Cause::reference_format);
     refuse(3, 4, test::map_body(good_map, test::code_reference(test::textured_image(site.pairs[1]))),
            Cause::reference_format);
+    refuse(3, 8, test::map_body(good_map, test::code_reference(test::textured_image(porch()), TSR_PICTURE_PRIOR_NONE)),
+           Cause::reference_format);
+    const Bytes gray_image{TSR_GRAY_FORMAT_VERSION, 4, 32, 0, 24, 0}; /* of the porch's size, whole */
+    refuse(3, 9, test::map_body(good_map, gray_image), Cause::reference_format);
     refuse(3, 5, test::map_body(test::code_map(test::flat_map(site.pairs[1], 64)), {}), Cause::other_settings);
     DecodedMap other_offset = test::flat_map(porch(), 64);
     other_offset.info.d0_q4 = static_cast<std::int16_t>(other_offset.info.d0_q4 + 2);

@@ -16,8 +16,8 @@
 #define ROWS_PER_STEP 4u
 #define STEP_LOG2_WHOLE 4u /* whole pixels, as other codecs are compared */
 #define D0_Q4 (-37)
-#define REFERENCE_NEAR 4u
-#define PICTURE_STEP 34u
+#define GRAY_NEAR 4u
+#define PICTURE_STEP 35u /* of the product's reference image */
 
 static struct tsr_gray_encoder gray_encoder;
 static struct tsr_gray_decoder gray_decoder;
@@ -84,10 +84,10 @@ void workbench_run_gray(const struct workbench_case *bench, const uint8_t *left,
     workbench_expect(memcmp(gray_decoded, right, pixels) == 0, "a view is lossless");
     workbench_store("gray_decoded.out", gray_decoded, pixels);
 
-    len = encode_gray(bench, left, REFERENCE_NEAR, "gray_encode_reference");
-    workbench_store("reference_coded.out", gray_coded, len);
-    decode_gray(bench, len, "gray_decode_reference");
-    workbench_store("reference_decoded.out", gray_decoded, pixels);
+    len = encode_gray(bench, left, GRAY_NEAR, "gray_encode_near");
+    workbench_store("near_coded.out", gray_coded, len);
+    decode_gray(bench, len, "gray_decode_near");
+    workbench_store("near_decoded.out", gray_decoded, pixels);
 }
 
 void workbench_run_picture(const struct workbench_case *bench, const uint8_t *left)
@@ -98,9 +98,9 @@ void workbench_run_picture(const struct workbench_case *bench, const uint8_t *le
     workbench_begin();
     enum tsr_status status = tsr_picture_encode_start(&picture_encoder, &info, 0, gray_coded, sizeof gray_coded,
                                                       picture_scratch, sizeof picture_scratch);
-    for (unsigned row = 0; row < bench->height && status >= TSR_OK; row += ROWS_PER_STEP) {
-        status =
-            tsr_picture_encode_rows(&picture_encoder, left + (size_t)row * bench->width, bench->width, ROWS_PER_STEP);
+    for (unsigned row = 0; row < bench->height && status >= TSR_OK; row += TSR_PICTURE_BLOCK) {
+        status = tsr_picture_encode_rows(&picture_encoder, left + (size_t)row * bench->width, bench->width,
+                                         TSR_PICTURE_BLOCK);
     }
     if (status == TSR_OK) {
         status = tsr_picture_encode_finish(&picture_encoder, &len);

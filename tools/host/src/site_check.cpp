@@ -190,8 +190,8 @@ void check_pair_numbers(const Site &site, const SitePair &pair)
     if (sixteenths != 1 && sixteenths != 2 && sixteenths != 4 && sixteenths != 8 && sixteenths != 16) {
         refuse_pair(site, pair, "step_px", "is not 1/16, 1/8, 1/4, 1/2 or 1");
     }
-    if (pair.reference_near < 0 || pair.reference_near > 7) {
-        refuse_pair(site, pair, "reference_near", "is outside 0..7");
+    if (pair.reference_step < 0 || pair.reference_step > 63) {
+        refuse_pair(site, pair, "reference_step", "is outside 0..63");
     }
 }
 

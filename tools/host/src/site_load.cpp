@@ -133,7 +133,7 @@ SitePair read_pair(TomlFields &fields)
     }
     pair.step_px = fields.number("step_px", 0.0625, 1, pair.step_px);
     pair.reference_image = fields.boolean("reference_image", pair.reference_image);
-    pair.reference_near = static_cast<int>(fields.integer("reference_near", 0, 7, pair.reference_near));
+    pair.reference_step = static_cast<int>(fields.integer("reference_step", 0, 63, pair.reference_step));
     pair.truth = fields.string("truth", "");
     fields.refuse_unknown();
     return pair;

@@ -124,7 +124,7 @@ std::string pair_text(const SitePair &pair)
     }
     text += line("step_px", number(pair.step_px));
     text += line("reference_image", pair.reference_image ? "true" : "false");
-    text += line("reference_near", std::to_string(pair.reference_near));
+    text += line("reference_step", std::to_string(pair.reference_step));
     if (!pair.truth.empty()) {
         text += line("truth", quoted(pair.truth.string()));
     }

@@ -25,8 +25,10 @@ struct DecodedMap {
     std::vector<std::uint16_t> disparity_q4; /* width * height, px, UQ12.4 or TSR_DISPARITY_INVALID */
 };
 
-/* Nothing if the bytes are no coded map or image of a version this build knows. Any bytes are safe. */
+/* Nothing if the bytes are no coded map or picture of a version this build knows. Any bytes are safe. */
 std::optional<DecodedMap> decode_map(std::span<const std::uint8_t> coded);
+
+/* Only pictures with the trained prior are reference images; an image of tsr/codec/gray.h never passes for one. */
 std::optional<GrayImage> decode_reference(std::span<const std::uint8_t> coded);
 
 /*

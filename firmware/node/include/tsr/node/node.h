@@ -81,7 +81,7 @@ enum tsr_work_kind {
     TSR_WORK_MAP_ENCODE,       /* pixels */
     TSR_WORK_VIEW_FILTER,      /* pixels, once for prefiltering and once for comparing with the held view */
     TSR_WORK_VIEW_ENCODE,      /* pixels */
-    TSR_WORK_REFERENCE_ENCODE, /* pixels, near-lossless */
+    TSR_WORK_REFERENCE_ENCODE, /* pixels */
     TSR_WORK_VIEW_DECODE,      /* pixels */
     TSR_WORK_SEAL,             /* bytes sealed or opened, messages and frames */
     TSR_WORK_COPY,             /* bytes */
@@ -107,10 +107,13 @@ struct tsr_node_config {
     struct tsr_change_config change;
     struct tsr_match_config match; /* of a SAD mode; lead and wing of a pair have the same */
     struct tsr_similarity_config similarity;
-    int16_t d0_q4;          /* disparity offset of the pair, px, Q12.4; carried in the map */
-    uint8_t step_log2;      /* map's step 2^k / 16 px, 0..4 */
-    uint8_t reference_near; /* 0..7: largest error of the reference image; TSR_REFERENCE_NONE sends none */
-    uint8_t rows_per_step;  /* work quantum of image stages, rows; 0 means 4 */
+    int16_t d0_q4;     /* disparity offset of the pair, px, Q12.4; carried in the map */
+    uint8_t step_log2; /* map's step 2^k / 16 px, 0..4 */
+    /* Quantiser of the reference image, 0..63 (tsr/codec/picture.h): 2^(k/8) gray
+     * levels in flat parts, 35 for an SSIM of 0.9; TSR_REFERENCE_NONE sends none. */
+    uint8_t reference_step;
+    /* Work quantum of image stages, rows; 0 means 4. The reference image takes whole bands of 8. */
+    uint8_t rows_per_step;
 };
 
 #define TSR_REFERENCE_NONE UINT8_C(255)

@@ -7,8 +7,8 @@
 #ifndef TSR_NODE_NODE_STATE_H
 #define TSR_NODE_NODE_STATE_H
 
-#include "tsr/codec/gray.h"
 #include "tsr/codec/map.h"
+#include "tsr/codec/picture.h"
 #include "tsr/codec/view.h"
 #include "tsr/node/node.h"
 #include "tsr/vision/median.h"

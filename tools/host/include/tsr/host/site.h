@@ -93,7 +93,7 @@ struct SitePair {
     std::optional<SitePose> right;
     double step_px = 0.5;        /* the map's disparity step: 1/16, 1/8, 1/4, 1/2 or 1 */
     bool reference_image = true; /* send the gray left image that colours the map */
-    int reference_near = 4;      /* its largest error in gray levels, 0 (lossless) .. 7 */
+    int reference_step = 35;     /* its quantiser, 0 .. 63; 8 more double the steps of gray */
     std::filesystem::path truth; /* folder of PFM ground truth, for reports; may be empty */
     int line = 0;
 };
