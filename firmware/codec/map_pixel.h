@@ -21,12 +21,7 @@
 #ifndef TSR_CODEC_MAP_PIXEL_H
 #define TSR_CODEC_MAP_PIXEL_H
 
-#include "map_model.h"
-
-/* The parallel arithmetic of Cortex-M4, M7, M33 (ARMv7-M ARM, A4.4.3), in Thumb state. */
-#if defined(__ARM_FEATURE_SIMD32) && defined(__thumb2__)
-#define TSR_MAP_HAS_DSP
-#endif
+#include "map_around.h"
 
 /* Candidates this near to the prediction are left to the difference. */
 #define CANDIDATE_NEAR 3u
@@ -42,103 +37,6 @@
 #define KIND_N_SECOND 3u
 #define KIND_W_SECOND 4u
 #define KIND_OTHER 5u
-
-/* The reference around a pixel, as labels. */
-struct still {
-    uint16_t here, w, e, n, nw, ne, s, se;
-};
-
-/* A row being coded. Pointers are to column x of the row and of the two above. */
-struct around {
-    uint16_t *here;
-    const uint16_t *up;
-    const uint16_t *up2;
-    const struct still *still; /* set if AGAINST_REFERENCE */
-    unsigned near;             /* 0 in a decoder */
-    unsigned run;              /* pixels before this one whose label was that of their own W */
-};
-
-/* What the questions beyond the first two need. */
-struct asked {
-    uint16_t label[6]; /* W, N, the reference's, NE, NW, NEE */
-    unsigned count;
-    unsigned gap; /* class of |W - N| */
-};
-
-static inline unsigned difference(unsigned a, unsigned b)
-{
-    return a > b ? a - b : b - a;
-}
-
-static inline unsigned class_of_gap(unsigned gap)
-{
-    return gap == 0 ? 0u : gap == 1 ? 1u : gap <= 3 ? 2u : gap <= 8 ? 3u : gap < TSR_MAP_DIFFERENCE_INVALID ? 4u : 5u;
-}
-
-static inline unsigned class_of_activity(unsigned sum)
-{
-    return sum == 0 ? 0u : sum <= 2 ? 1u : sum <= 5 ? 2u : sum <= 12 ? 3u : sum < TSR_MAP_DIFFERENCE_INVALID ? 4u : 5u;
-}
-
-/* Two labels side by side, the first in the lower half. */
-static inline uint32_t pair_of(const uint16_t *labels)
-{
-    return labels[0] | (uint32_t)labels[1] << 16;
-}
-
-/* Both less the candidate, saturated to -4 .. 3, in 3 bits each. */
-static inline unsigned pair_index(uint32_t pair, uint32_t candidate)
-{
-#if defined(TSR_MAP_HAS_DSP)
-    uint32_t away;
-    __asm__("ssub16 %0, %1, %2\n\tssat16 %0, #3, %0" : "=r"(away) : "r"(pair), "r"(candidate * 0x10001u) : "cc");
-    return (away & 7u) | (away >> 16 & 7u) << 3;
-#else
-    const int first = (int)(pair & 0xffffu) - (int)candidate, second = (int)(pair >> 16) - (int)candidate;
-    return ((unsigned)(first < -4  ? -4
-                       : first > 3 ? 3
-                                   : first) &
-            7u) |
-           ((unsigned)(second < -4  ? -4
-                       : second > 3 ? 3
-                                    : second) &
-            7u) << 3;
-#endif
-}
-
-static inline bool was_asked(const struct asked *asked, unsigned label)
-{
-    for (unsigned i = 0; i < asked->count; i++) {
-        if (asked->label[i] == label) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/* Would an encoder take this label for the pixel's? Whether there is a match is never changed. */
-static inline bool is_near(const struct around *at, unsigned label)
-{
-    return difference(*at->here, label) <= at->near;
-}
-
-/* What changed around the pixel: W, N, NE, NW, a bit each. */
-static inline unsigned changes(const struct around *at)
-{
-    const struct still *still = at->still;
-    return (unsigned)(at->here[-1] != still->w) | (unsigned)(at->up[0] != still->n) << 1 |
-           (unsigned)(at->up[1] != still->ne) << 2 | (unsigned)(at->up[-1] != still->nw) << 3;
-}
-
-/* What the last tables look at. */
-static inline void index_reference(const struct around *at, unsigned candidate, uint8_t index[3])
-{
-    const struct still *still = at->still;
-    index[0] = (uint8_t)pair_index(still->here | (uint32_t)still->e << 16, candidate);
-    index[1] = (uint8_t)pair_index(still->s | (uint32_t)still->se << 16, candidate);
-    index[2] =
-        (uint8_t)(changes(at) | (unsigned)(still->here == candidate) << 4 | (unsigned)(still->e == still->here) << 5);
-}
 
 /* The context that the trained tables choose. */
 static inline unsigned candidate_cell(unsigned kind, const uint8_t *index)
@@ -194,8 +92,8 @@ static inline bool ask_nearest(struct tsr_map_model *model, struct side *side, c
 static inline bool ask_still(struct tsr_map_model *model, struct side *side, const struct around *at,
                              struct asked *asked)
 {
-    return AGAINST_REFERENCE && !was_asked(asked, at->still->here) &&
-           ask(model, side, at, asked, KIND_OTHER, at->still->here);
+    return AGAINST_REFERENCE && !was_asked(asked, at->still.here) &&
+           ask(model, side, at, asked, KIND_OTHER, at->still.here);
 }
 
 /* Is it NE, NW or NEE, unless the difference is as good? */
@@ -218,8 +116,8 @@ static inline unsigned predict(const struct tsr_map_model *model, const struct a
 {
     const unsigned invalid = model->invalid;
     const unsigned w = at->here[-1], n = at->up[0], nw = at->up[-1], ne = at->up[1];
-    if (AGAINST_REFERENCE && at->still->here != invalid && (w == at->still->w || n == at->still->n)) {
-        return at->still->here;
+    if (AGAINST_REFERENCE && at->still.here != invalid && (w == at->still.w || n == at->still.n)) {
+        return at->still.here;
     }
     if (w != invalid && n != invalid && nw != invalid) {
         const unsigned high = w > n ? w : n, low = w > n ? n : w;
@@ -315,8 +213,8 @@ static inline unsigned flat_context(const struct tsr_map_model *model, const str
     const unsigned w = at->here[-1];
     const unsigned context = w == model->invalid;
     if (AGAINST_REFERENCE) {
-        return context + 2u * (unsigned)(at->still->here == w) + 4u * (unsigned)(at->still->e == w) +
-               8u * (unsigned)(at->still->s == w) + 16u * (unsigned)(changes(at) != 0);
+        return context + 2u * (unsigned)(at->still.here == w) + 4u * (unsigned)(at->still.e == w) +
+               8u * (unsigned)(at->still.s == w) + 16u * (unsigned)(changes(at) != 0);
     }
     return context + twice_run_classes[at->run] + 12u * (unsigned)(at->up[2] == w) + 24u * (unsigned)(at->up2[1] == w);
 }
@@ -326,7 +224,7 @@ static inline unsigned flat_context(const struct tsr_map_model *model, const str
 static TSR_OUT_OF_LINE bool code_label(struct tsr_map_model *model, struct side *side, const struct around *at,
                                        bool flat)
 {
-    struct asked asked;
+    struct asked asked; /* of which count says how much is set */
     asked.count = 0;
     if (flat) {
         asked.label[asked.count++] = at->here[-1];
@@ -411,10 +309,8 @@ static inline bool code_pixel(struct tsr_map_model *model, struct side *side, st
                               bool *continued)
 {
     const unsigned w = at->here[-1];
-    struct still still;
     if (AGAINST_REFERENCE) {
-        still = look_up(model, x);
-        at->still = &still;
+        at->still = look_up(model, x);
     }
     const bool flat = is_flat(at, *continued);
     *continued = flat && side_bit(side, model, TSR_MAP_FLAT_AT + flat_context(model, at), is_near(at, w));
