@@ -7,6 +7,11 @@
 
 #include "map_trace_side.h"
 
+uint16_t tsr_map_prior_matcher_crc(void)
+{
+    return tsr_map_prior.matcher_crc;
+}
+
 unsigned tsr_map_candidate_level(const int8_t weights[TSR_MAP_TABLE_COUNT][TSR_MAP_TABLE_LEN],
                                  const uint8_t index[TSR_MAP_TABLE_COUNT], unsigned table_count)
 {

@@ -16,15 +16,25 @@ def folders(folder):
     return sorted(folder.glob("mb*"))
 
 
+def crop(picture):
+    """The centre, 4:3."""
+    rows, columns = picture.shape
+    width, height = min(columns, rows * 4 // 3), min(rows, columns * 3 // 4)
+    x, y = (columns - width) // 2, (rows - height) // 2
+    return picture[y:y + height, x:x + width]
+
+
+def reduced(view, width, height):
+    """The centre, by area."""
+    return cv2.resize(crop(view), (width, height), interpolation=cv2.INTER_AREA)
+
+
 def load(folder, width, height):
-    """Centre-cropped to 4:3, reduced by area; the truth by nearest, in px of the reduced picture."""
-    left, right = (cv2.imread(str(folder / f"{side}.png"), cv2.IMREAD_GRAYSCALE) for side in ("left", "right"))
-    truth = cv2.imread(str(folder / "gt256_left.png"), cv2.IMREAD_UNCHANGED).astype(np.float32) / 256
-    rows, columns = left.shape
-    crop_width, crop_height = min(columns, rows * 4 // 3), min(rows, columns * 3 // 4)
-    x, y = (columns - crop_width) // 2, (rows - crop_height) // 2
-    left, right, truth = (p[y:y + crop_height, x:x + crop_width] for p in (left, right, truth))
-    left, right = (cv2.resize(p, (width, height), interpolation=cv2.INTER_AREA) for p in (left, right))
+    """Views, and the truth by nearest, in px of the reduced picture."""
+    left, right = (reduced(cv2.imread(str(folder / f"{side}.png"), cv2.IMREAD_GRAYSCALE), width, height)
+                   for side in ("left", "right"))
+    truth = crop(cv2.imread(str(folder / "gt256_left.png"), cv2.IMREAD_UNCHANGED).astype(np.float32) / 256)
+    crop_width = truth.shape[1]
     return left, right, cv2.resize(truth, (width, height), interpolation=cv2.INTER_NEAREST) * width / crop_width
 
 

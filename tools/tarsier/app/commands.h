@@ -19,6 +19,8 @@ using Command = std::function<int()>;
 
 Command declare_demo_scene(CLI::App &command);
 Command declare_compare(CLI::App &command);
+Command declare_decode(CLI::App &command);
+Command declare_encode(CLI::App &command);
 Command declare_match(CLI::App &command);
 Command declare_rectify_table(CLI::App &command);
 Command declare_train_prior(CLI::App &command);

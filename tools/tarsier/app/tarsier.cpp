@@ -3,6 +3,8 @@
  *
  *   tarsier demo-scene --pictures DIR --out DIR          recorded folders and site of the demo
  *   tarsier match LEFT RIGHT --disparities N -o OUT      a disparity map as a node computes it
+ *   tarsier encode MAP -o OUT.tdm                       a map in few bytes
+ *   tarsier decode MAP.tdm -o OUT                        the map of those bytes
  *   tarsier compare MAP TRUTH                            how good a disparity map is
  *   tarsier rectify-table CALIBRATION... -o TABLE        a node's rectification from a calibration
  *   tarsier train-prior DIR... -o map_prior.c            what the map codec knows beforehand
@@ -28,6 +30,8 @@ struct Entry {
 constexpr Entry kCommands[] = {
     {"demo-scene", "write the demo's recorded frames and site", tsr::declare_demo_scene},
     {"match", "match a rectified pair as a node does", tsr::declare_match},
+    {"encode", "code a disparity map in few bytes", tsr::declare_encode},
+    {"decode", "decode a coded disparity map", tsr::declare_decode},
     {"rectify-table", "make a node's rectification table", tsr::declare_rectify_table},
     {"train-prior", "learn the map codec's prior from maps", tsr::declare_train_prior},
     {"compare", "judge a disparity map by the truth", tsr::declare_compare},

@@ -4,13 +4,13 @@
  * SPDX-License-Identifier: Apache-2.0
  */
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "coded_map_options.h"
 #include "commands.h"
 #include "tsr/coding/disparity_values.h"
 #include "tsr/coding/map_prior_trainer.h"
@@ -63,11 +63,6 @@ Folder read_folder(const std::filesystem::path &path)
     return folder;
 }
 
-std::uint8_t log2_of_step(double step)
-{
-    return static_cast<std::uint8_t>(std::lround(std::log2(step * TSR_DISPARITY_ONE_Q4)));
-}
-
 void add(MapPriorTrainer &trainer, const TrainOptions &options, const DisparityValues &map,
          const DisparityValues *earlier)
 {
@@ -109,10 +104,14 @@ std::size_t add_sequence(MapPriorTrainer &trainer, const TrainOptions &options, 
 
 int train(const TrainOptions &options)
 {
+    if (options.out.extension() != ".c") {
+        throw InputError(options.out.string(), "--out", "the name does not end in .c");
+    }
     MapPriorTrainer trainer;
     std::size_t alone = 0, following = 0;
     for (const auto &path : options.folders) {
         const Folder folder = read_folder(path);
+        const std::size_t before = alone + following;
         for (const auto &file : folder.maps) {
             add(trainer, options, read_map(file), nullptr);
             alone++;
@@ -120,9 +119,9 @@ int train(const TrainOptions &options)
         for (const auto &sequence : folder.folders) {
             following += add_sequence(trainer, options, sequence);
         }
-    }
-    if (alone + following == 0) {
-        throw InputError(options.folders.front().string(), "folder", "no map (.pfm, .png) in it");
+        if (alone + following == before) {
+            throw InputError(path.string(), "folder", "no map (.pfm, .png) in it, and no two in a folder inside");
+        }
     }
     const std::string source = map_prior_source(trainer.train(), options.id, matcher_fingerprint());
     write_file_atomically(options.out, source);
@@ -141,8 +140,7 @@ Command declare_train_prior(CLI::App &command)
                     "folders of maps (.pfm, or .png of 16 bits); a folder inside is a sequence of one static camera")
         ->required();
     command.add_option("-o,--out", options->out, "C source to write")->required()->check(refuse_empty_name);
-    command.add_option("--step", options->steps, "px; default: 1 0.5 0.25")
-        ->check(CLI::IsMember({1.0, 0.5, 0.25, 0.125, 0.0625}));
+    command.add_option("--step", options->steps, "px; default: 1 0.5 0.25")->check(is_map_step());
     command.add_option("--id", options->id, "of the prior, in every coded map's header")->check(CLI::Range(1, 15));
     return [options] { return train(*options); };
 }

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "tsr/host/input_error.h"
 
 extern "C" {
@@ -46,10 +48,9 @@ DisparityValues disparity_values(const FloatImage &map, const std::filesystem::p
         }
         const double sixteenths = static_cast<double>(map.pixels[i]) * TSR_DISPARITY_ONE_Q4;
         if (!(sixteenths > -0.5 && sixteenths < kValueMax + 0.5)) {
-            const std::size_t width = result.width;
             throw InputError(file.string(), "disparity",
-                             std::to_string(map.pixels[i]) + " px at (" + std::to_string(i % width) + ", " +
-                                 std::to_string(i / width) + "), outside 0 .. 127.9375");
+                             fmt::format("{:g} px at ({}, {}), outside 0 .. 127.9375", map.pixels[i], i % result.width,
+                                         i / result.width));
         }
         const long value = std::lround(sixteenths);
         largest = std::max(largest, value);

@@ -41,6 +41,9 @@ struct tsr_map_question {
 
 typedef void (*tsr_map_question_fn)(void *user, const struct tsr_map_question *question);
 
+/* The fingerprint of the matcher whose maps this build's prior was made from (tools/tarsier, matcher_fingerprint()). */
+uint16_t tsr_map_prior_matcher_crc(void);
+
 /* The context of a candidate under these weights (log-odds in eighths, of one kind): its sum in levels, 0 .. 31. */
 unsigned tsr_map_candidate_level(const int8_t weights[TSR_MAP_TABLE_COUNT][TSR_MAP_TABLE_LEN],
                                  const uint8_t index[TSR_MAP_TABLE_COUNT], unsigned table_count);

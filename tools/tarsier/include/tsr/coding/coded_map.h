@@ -1,0 +1,66 @@
+/*
+ * Files of one coded disparity map (.tdm): exactly its bytes, docs/codec.md, 2.1. What refuses a file throws InputError
+ * naming it.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_CODING_CODED_MAP_H
+#define TSR_CODING_CODED_MAP_H
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <vector>
+
+extern "C" {
+#include "tsr/codec/map.h"
+}
+
+namespace tsr
+{
+
+/* Bytes whose header was read. */
+struct CodedMap {
+    tsr_map_info info{};
+    std::vector<std::uint8_t> bytes;
+
+    unsigned format_version() const { return bytes[0] & 15U; }
+    unsigned prior() const { return bytes[1] >> 4U; }
+    double step_px() const;
+    double d0_px() const;
+    double bits_per_pixel() const;
+};
+
+/* A map that sender and receiver hold, and what they call it. */
+struct HeldMap {
+    std::uint16_t id = 0;
+    std::uint16_t width = 0;
+    std::uint16_t height = 0;
+    std::vector<std::uint16_t> values_q4; /* [height][width], px, UQ12.4, or TSR_DISPARITY_INVALID */
+};
+
+/* px, multiples of a sixteenth: 1, 0.5, 0.25, 0.125 or 0.0625. */
+std::uint8_t log2_of_step(double step_px);
+
+/* More bytes than any coded map has are not read. Refuses a header that the codec refuses, naming the field. */
+CodedMap read_coded_map(const std::filesystem::path &file);
+
+/* A .tdm of a map coded alone, as it decodes, or a map file (tsr/stereo/disparity_file.h) quantised to the step. */
+HeldMap read_held_map(const std::filesystem::path &file, std::uint16_t id, std::uint8_t step_log2);
+
+/*
+ * [height][width] values; file is what to name in a refusal. A map coded against another needs that one: refused, with
+ * its id, if there is none or it has another id or shape.
+ */
+std::vector<std::uint16_t> decode_map(const CodedMap &coded, const std::filesystem::path &file,
+                                      const std::optional<HeldMap> &held);
+
+/* values_q4: [height][width], which info admits; against the held map, of the same shape, if there is one.
+ * Throws std::invalid_argument for anything else. */
+CodedMap encode_map(const tsr_map_info &info, std::span<const std::uint16_t> values_q4,
+                    const std::optional<HeldMap> &held);
+
+} // namespace tsr
+
+#endif
