@@ -358,7 +358,7 @@ enum tsr_status tsr_map_packet_decode(struct tsr_map_model *model, const struct 
             decode_labels(model, &range, read.is_literal, tsr_map_row_labels(model, 0), place.x, end);
         for (unsigned x = place.x; x < decoded; x++) {
             map[place.y * stride + place.strip_x + x] =
-                labels[x] == model->invalid ? TSR_DISPARITY_INVALID : (uint16_t)(labels[x] << info->step_log2);
+                (uint16_t)(labels[x] == model->invalid ? TSR_DISPARITY_INVALID : labels[x] << info->step_log2);
         }
         close_span(model, &place, done, decoded);
         done += decoded - place.x;
