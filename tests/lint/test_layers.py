@@ -23,7 +23,7 @@ RULES = {
     "hal/air": {"hal", "base"},
     "hal/mps2": {"hal", "base"},
     "tools/host": {"host", "base", "vision", "codec", "wire"},
-    "tools/tarsier": {"stage", "stereo", "host", "base", "codec", "wire", "vision"},
+    "tools/tarsier": {"coding", "stage", "stereo", "host", "base", "codec", "wire", "vision"},
     "tools/train": {"codec", "base"},
     "emulator": {"emulator", "node", "hal", "host", "base", "wire"},
     "sink": {"sink", "host", "base", "codec", "wire"},
