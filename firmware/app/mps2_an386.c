@@ -33,7 +33,7 @@
 #define WIDTH 160
 #define HEIGHT 120
 #define DISPARITIES 32
-#define STEP_LOG2 2 /* 1/4 px */
+#define STEP_LOG2 3 /* 1/2 px */
 #define REFERENCE_STEP 35
 #define D0_Q4 539 /* of the demo's pair, 33.6875 px */
 

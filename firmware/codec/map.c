@@ -96,7 +96,7 @@ enum tsr_status tsr_map_encode_start_against(struct tsr_map_encoder *encoder, co
 static void row_from_labels(const struct tsr_map_model *model, uint16_t *row, const uint16_t *labels)
 {
     for (unsigned x = 0; x < model->info.width; x++) {
-        row[x] = labels[x] == model->invalid ? TSR_DISPARITY_INVALID : (uint16_t)(labels[x] << model->info.step_log2);
+        row[x] = (uint16_t)(labels[x] == model->invalid ? TSR_DISPARITY_INVALID : labels[x] << model->info.step_log2);
     }
 }
 

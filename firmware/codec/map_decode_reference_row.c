@@ -3,8 +3,10 @@
  *
  * SPDX-License-Identifier: Apache-2.0
  */
-#include "map_decode_side.h"
+#include "map_model.h"
 
+#define CONTEXT_SHIFT TSR_MAP_SHIFT
+#include "map_decode_side.h"
 #define AGAINST_REFERENCE 1
 #include "map_pixel.h"
 

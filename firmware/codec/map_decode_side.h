@@ -1,5 +1,5 @@
 /*
- * The decoder's side of the questions, for map_pixel.h.
+ * The decoder's side of the questions, for map_pixel.h. The file that includes this has defined CONTEXT_SHIFT.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -16,7 +16,7 @@ struct side {
 static inline bool side_bit(struct side *side, struct tsr_map_model *model, unsigned cell, bool bit)
 {
     (void)bit;
-    return tsr_fixed_decode(&side->range, &model->cells[cell]);
+    return tsr_fixed_decode(&side->range, &model->cells[cell], CONTEXT_SHIFT);
 }
 
 static TSR_OUT_OF_LINE bool side_rare_bit(struct side *side, struct tsr_map_model *model, unsigned cell, bool bit)

@@ -1,5 +1,5 @@
 /*
- * The encoder's side of the questions, for map_pixel.h.
+ * The encoder's side of the questions, for map_pixel.h. The file that includes this has defined CONTEXT_SHIFT.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -15,7 +15,7 @@ struct side {
 
 static inline bool side_bit(struct side *side, struct tsr_map_model *model, unsigned cell, bool bit)
 {
-    tsr_fixed_encode(&side->range, &model->cells[cell], bit);
+    tsr_fixed_encode(&side->range, &model->cells[cell], bit, CONTEXT_SHIFT);
     return bit;
 }
 

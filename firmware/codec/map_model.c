@@ -39,6 +39,7 @@ enum tsr_status tsr_map_model_start(struct tsr_map_model *model, const struct ts
     model->last_label = model->label_count / 4u;
     model->label_bits = (uint8_t)TSR_MAP_LABEL_BITS(info->disparities, info->step_log2);
     model->allowed_bits = 8u * TSR_MAP_SLACK_LEN;
+    model->run = 0;
     for (size_t i = 0; i < scratch_count; i++) {
         scratch[i] = model->invalid;
     }
@@ -49,7 +50,7 @@ enum tsr_status tsr_map_model_start(struct tsr_map_model *model, const struct ts
     return TSR_OK;
 }
 
-static bool is_valid_value(const struct tsr_map_info *info, unsigned value)
+bool tsr_map_is_valid_value(const struct tsr_map_info *info, unsigned value)
 {
     const unsigned below_step = (1u << info->step_log2) - 1u;
     return value == TSR_DISPARITY_INVALID ||
@@ -70,7 +71,7 @@ bool tsr_map_take_row(struct tsr_map_model *model, const uint16_t *row)
         const uint32_t pair = row[x] | (uint32_t)row[x + 1u] << 16;
         const uint32_t too_large = (((pair | 0x80008000u) - end_twice) | pair) & 0x80008000u;
         if (((pair & below_step_twice) | too_large) != 0 && pair != UINT32_MAX &&
-            !(is_valid_value(info, row[x]) && is_valid_value(info, row[x + 1u]))) {
+            !(tsr_map_is_valid_value(info, row[x]) && tsr_map_is_valid_value(info, row[x + 1u]))) {
             return false;
         }
         const uint32_t both = pair >> step_log2 & labels_twice;
@@ -80,5 +81,5 @@ bool tsr_map_take_row(struct tsr_map_model *model, const uint16_t *row)
     if (x < width) {
         labels[x] = TSR_MAP_LABEL(row[x], step_log2);
     }
-    return x == width || is_valid_value(info, row[x]);
+    return x == width || tsr_map_is_valid_value(info, row[x]);
 }

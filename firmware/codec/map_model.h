@@ -23,6 +23,10 @@ _Static_assert(TSR_MAP_SCRATCH_COUNT(0) == TSR_MAP_ROW_COUNT * (TSR_MAP_PAD_LEFT
 #define TSR_MAP_LABEL(value, step_log2) ((uint16_t)((unsigned)(value) >> (step_log2)&0x7fffu))
 #define TSR_MAP_DIFFERENCE_INVALID 2048u
 
+/* How fast contexts learn, tsr_fixed_learn(): whole maps, and packets, which are over before long. */
+#define TSR_MAP_SHIFT 6u
+#define TSR_MAP_PACKET_SHIFT 5u
+
 /* Calls that few pixels make, kept out of the code that most run through. */
 #define TSR_OUT_OF_LINE __attribute__((noinline))
 
@@ -80,6 +84,9 @@ enum tsr_status tsr_map_model_start(struct tsr_map_model *model, const struct ts
 
 bool tsr_map_is_valid_info(const struct tsr_map_info *info);
 
+/* Is it invalid, or a multiple of the step below 16 * disparities? */
+bool tsr_map_is_valid_value(const struct tsr_map_info *info, unsigned value);
+
 /* Put a row of disparities, as labels, into row model->row of the scratch; false if one is neither invalid nor a
  * multiple of the step below 16 * disparities. */
 bool tsr_map_take_row(struct tsr_map_model *model, const uint16_t *row);
@@ -92,5 +99,9 @@ void tsr_map_encode_reference_row(struct tsr_map_model *model, struct tsr_range_
 /* Decode row model->row into the scratch and step to the next; false if it meets a label that does not exist. */
 bool tsr_map_decode_row(struct tsr_map_model *model, struct tsr_range_decoder *range);
 bool tsr_map_decode_reference_row(struct tsr_map_model *model, struct tsr_range_decoder *range);
+
+/* Columns first .. end - 1 of row model->row of a packet, from the left; the caller steps. */
+void tsr_map_encode_span(struct tsr_map_model *model, struct tsr_range_encoder *range, unsigned first, unsigned end);
+bool tsr_map_decode_span(struct tsr_map_model *model, struct tsr_range_decoder *range, unsigned first, unsigned end);
 
 #endif

@@ -460,14 +460,15 @@ static inline bool code_labels(struct tsr_map_model *model, struct side *side, s
     return true;
 }
 
-/* Columns first .. end - 1 of the row; false if a label does not exist. */
+/* Columns first .. end - 1 of the row, in one call or several; false if a label does not exist. */
 static inline bool code_span(struct tsr_map_model *model, struct side *side, unsigned near, unsigned first,
                              unsigned end)
 {
     struct around at = {.here = tsr_map_row_labels(model, 0) + first,
                         .up = tsr_map_row_labels(model, 1) + first,
                         .up2 = tsr_map_row_labels(model, 2) + first,
-                        .near = near};
+                        .near = near,
+                        .run = first > 0 ? model->run : 0};
     bool continued = false;
     for (unsigned x = first; x < end;) {
         const unsigned left = TSR_MAP_LITERAL_PIXELS - x % TSR_MAP_LITERAL_PIXELS;
@@ -489,6 +490,7 @@ static inline bool code_span(struct tsr_map_model *model, struct side *side, uns
         }
         continued = false;
     }
+    model->run = (uint8_t)at.run;
     return true;
 }
 

@@ -16,13 +16,13 @@
 
 #include "tsr/codec/range.h"
 
-#define TSR_RANGE_FIXED_SHIFT 6u /* a context forgets within about 64 bits */
 #define TSR_RANGE_RENORMALISE_BELOW (1u << 24)
 
-static inline void tsr_fixed_learn(uint16_t *context, bool bit)
+/* The context forgets within about 2^shift bits. */
+static inline void tsr_fixed_learn(uint16_t *context, bool bit, unsigned shift)
 {
     const uint32_t p = *context;
-    *context = (uint16_t)(bit ? p + ((65536u - p) >> TSR_RANGE_FIXED_SHIFT) : p - (p >> TSR_RANGE_FIXED_SHIFT));
+    *context = (uint16_t)(bit ? p + ((65536u - p) >> shift) : p - (p >> shift));
 }
 
 /* low += amount; a carry goes into the bytes before it, unless they are beyond the buffer. */
@@ -49,10 +49,10 @@ static inline void tsr_encoder_renormalise(struct tsr_range_encoder *encoder)
     }
 }
 
-static inline void tsr_fixed_encode(struct tsr_range_encoder *encoder, uint16_t *context, bool bit)
+static inline void tsr_fixed_encode(struct tsr_range_encoder *encoder, uint16_t *context, bool bit, unsigned shift)
 {
     const uint32_t bound = (encoder->range >> 16) * *context;
-    tsr_fixed_learn(context, bit);
+    tsr_fixed_learn(context, bit, shift);
     if (bit) {
         encoder->range = bound;
     } else {
@@ -79,11 +79,11 @@ static inline void tsr_decoder_renormalise(struct tsr_range_decoder *decoder)
     }
 }
 
-static inline bool tsr_fixed_decode(struct tsr_range_decoder *decoder, uint16_t *context)
+static inline bool tsr_fixed_decode(struct tsr_range_decoder *decoder, uint16_t *context, unsigned shift)
 {
     const uint32_t bound = (decoder->range >> 16) * *context;
     const bool bit = decoder->offset < bound;
-    tsr_fixed_learn(context, bit);
+    tsr_fixed_learn(context, bit, shift);
     if (bit) {
         decoder->range = bound;
     } else {

@@ -174,7 +174,7 @@ static void keep_run(struct tsr_view_model *model, uint8_t *here, uint8_t *error
     const uint8_t *packed = held_row(model);
     model->allowed_bits += LITERAL_BITS * (end - x);
     for (; x < end; x++) {
-        here[x] = packed[x / 2u] >> 4u * (x % 2u) & 15u;
+        here[x] = (uint8_t)((unsigned)packed[x / 2u] >> 4u * (x % 2u) & 15u);
         errors[x] = 0;
     }
 }

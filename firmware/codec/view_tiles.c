@@ -31,7 +31,7 @@ static void add_row(struct tile *tile, const struct tsr_view_info *info, const u
     const int cap = info->cap;
     const uint8_t *decoded = decoded_of[info->coarse ? 1 : 0];
     for (; x < end; x++) {
-        const int held = (int)(packed[x / 2u] >> 4u * (x % 2u) & 15u) - cap;
+        const int held = (int)((unsigned)packed[x / 2u] >> 4u * (x % 2u) & 15u) - cap;
         const int fresh = (pixels[x] < 2 * cap ? pixels[x] : 2 * cap) - cap;
         const int difference = fresh > held ? fresh - held : held - fresh;
         const int magnitude = fresh < 0 ? -fresh : fresh;

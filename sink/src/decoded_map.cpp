@@ -2,8 +2,11 @@
 #include "tsr/sink/decoded_map.h"
 
 #include <memory>
+#include <stdexcept>
+#include <string>
 
 extern "C" {
+#include "tsr/codec/map_restore.h"
 #include "tsr/codec/picture.h"
 }
 
@@ -44,6 +47,18 @@ std::optional<GrayImage> decode_reference(std::span<const std::uint8_t> coded)
         return std::nullopt;
     }
     return image;
+}
+
+DecodedMap restored(const DecodedMap &map)
+{
+    DecodedMap result = map;
+    std::vector<std::uint16_t> scratch(TSR_MAP_RESTORE_SCRATCH_COUNT(map.info.width, map.info.height));
+    const tsr_status status = tsr_map_restore(&map.info, result.disparity_q4.data(), result.disparity_q4.size(),
+                                              scratch.data(), scratch.size());
+    if (status != TSR_OK) {
+        throw std::invalid_argument(std::string("restored: ") + tsr_status_name(status));
+    }
+    return result;
 }
 
 } // namespace tsr

@@ -70,7 +70,7 @@ std::size_t export_cloud(const Site &site, const Store &store, const fs::path &f
         }
         const auto reference = decode_reference(stored->coded_reference);
         const bool fits = reference && reference->size() == ImageSize{map->info.width, map->info.height};
-        const auto points = triangulate(PairGeometry(pair), *map, fits ? &*reference : nullptr);
+        const auto points = triangulate(PairGeometry(pair), restored(*map), fits ? &*reference : nullptr);
         cloud.insert(cloud.end(), points.begin(), points.end());
     }
     write_ply(file, cloud);
@@ -133,7 +133,7 @@ ExportResult export_site(const Site &site, const Store &store, const SessionNumb
             sum->reference_bytes += stored.coded_reference.size();
         }
         if (const auto map = decode_map(stored.coded_map)) {
-            export_map(stored, *map, folder);
+            export_map(stored, restored(*map), folder);
         }
         received.push_back(map_json(stored));
     });

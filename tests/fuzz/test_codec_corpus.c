@@ -11,6 +11,9 @@
 #define LLVMFuzzerTestOneInput fuzz_map_one_input
 #include "fuzz_codec_map.c"
 #undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_packet_one_input
+#include "fuzz_codec_packet.c"
+#undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_gray_one_input
 #include "fuzz_codec_gray.c"
 #undef LLVMFuzzerTestOneInput
@@ -32,6 +35,10 @@ static void test_map_corpus(void)
 {
     corpus_replay(fuzz_map_one_input, "corpus_codec_map", MUTATIONS);
 }
+static void test_packet_corpus(void)
+{
+    corpus_replay(fuzz_packet_one_input, "corpus_codec_packet", MUTATIONS);
+}
 static void test_gray_corpus(void)
 {
     corpus_replay(fuzz_gray_one_input, "corpus_codec_gray", MUTATIONS);
@@ -50,6 +57,7 @@ int main(int argc, char **argv)
     printf("replay one mutation of every file: SEED=n RUNS=1 %s\n", argc > 0 ? argv[0] : "");
     UNITY_BEGIN();
     RUN_TEST(test_map_corpus);
+    RUN_TEST(test_packet_corpus);
     RUN_TEST(test_gray_corpus);
     RUN_TEST(test_view_corpus);
     RUN_TEST(test_picture_corpus);

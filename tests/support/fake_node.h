@@ -58,7 +58,7 @@ static inline struct tsr_node_config fake_config(enum tsr_role role)
     config.change.settle_frames = 1;
     config.match.disparities = 16;
     config.match.window = 5;
-    config.step_log2 = 2;
+    config.step_log2 = 3;
     config.reference_step = 35;
     switch (role) {
     case TSR_ROLE_GATEWAY:

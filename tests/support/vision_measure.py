@@ -3,7 +3,8 @@
     TSR_BUILD=build/release python3 tests/support/vision_measure.py FOLDER_OF_PAIRS [TRIALS]
 
 FOLDER_OF_PAIRS/mb*/ holds left.png, right.png and gt256_left.png (disparity = value / 256, 0 unknown). Needs
-python3-opencv. All randomness comes from SEED (environment, default 77).
+python3-opencv. All randomness comes from SEED (environment, default 77). Maps are compared in steps of
+2^STEP_LOG2 sixteenths of a pixel (environment, default 3: as a node sends them).
 
 SPDX-License-Identifier: Apache-2.0
 """
@@ -14,6 +15,7 @@ import pathlib
 import sys
 
 import cv2
+import map_library
 import numpy as np
 import stereo_pairs
 import vision_library
@@ -25,6 +27,7 @@ LIGHT_GAIN = 1.3
 OBJECT_PARTS = (0.02, 0.03, 0.05, 0.10)
 NEARER_PX = 2  # an object is at least this much nearer than everything it hides
 TEXTURE_STD_MIN = 12  # gray levels: what counts as a textured patch
+STEP_LOG2 = int(os.environ.get("STEP_LOG2", "3"))
 RNG = np.random.default_rng(int(os.environ.get("SEED", "77")))
 
 
@@ -39,6 +42,10 @@ def noisy(picture):
 def match(left, right, disparities):
     """The map after matcher and median, with their defaults."""
     return vision_library.refine(vision_library.match(left, right, disparities), ["median3"])
+
+
+def sent(left, right, disparities):
+    return map_library.quantise(match(left, right, disparities), disparities, STEP_LOG2)
 
 
 def is_similar(a, b):
@@ -110,7 +117,7 @@ def measure_similarity(pairs, disparities, trials):
     for i, (left, right, truth) in enumerate(pairs):
         others = [p[0] for j, p in enumerate(pairs) if j != i]
         for _ in range(trials):
-            before = match(noisy(left), noisy(right), disparities)
+            before = sent(noisy(left), noisy(right), disparities)
             gain = light_ramp(*left.shape)
             cases = {"noise": (left, right), "light": (left * gain, right * gain)}
             cases.update({f"object {part:.0%}": with_object(left, right, truth, disparities, part, others)
@@ -118,7 +125,7 @@ def measure_similarity(pairs, disparities, trials):
             for name, views in cases.items():
                 if views is not None:
                     count = counts.setdefault(name, [0, 0])
-                    count[0] += is_similar(match(noisy(views[0]), noisy(views[1]), disparities), before)
+                    count[0] += is_similar(sent(noisy(views[0]), noisy(views[1]), disparities), before)
                     count[1] += 1
     return counts
 

@@ -40,7 +40,7 @@ static int print_plan(enum tsr_role role, const struct size *size)
     config.change.width = config.match.width = config.similarity.width = size->width;
     config.change.height = config.match.height = config.similarity.height = size->height;
     config.match.disparities = size->disparities;
-    config.step_log2 = 2;
+    config.step_log2 = 3;
     struct tsr_memory_plan plan;
     const char *field = NULL;
     if (tsr_node_check(&config, &field) != TSR_OK || tsr_node_plan_memory(&config, &plan) != TSR_OK) {

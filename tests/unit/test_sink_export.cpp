@@ -1,4 +1,5 @@
 /* Exported files: complete, right and equal for equal stores. SPDX-License-Identifier: Apache-2.0 */
+#include <cstring>
 #include <map>
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 #include "test_sink_messages.h"
 #include "tsr/host/pfm.h"
 #include "tsr/sink/export.h"
+#include "tsr/sink/geometry.h"
 
 namespace tsr
 {
@@ -19,13 +21,13 @@ using test::Folder;
 
 constexpr int kReferenceErrorMax = 8;
 
-StoredMap stored_of(const SitePair &pair, std::uint32_t counter, std::uint16_t disparity_q4, bool kept)
+StoredMap stored_of(const SitePair &pair, std::uint32_t counter, const DecodedMap &map, bool kept)
 {
     StoredMap stored;
     stored.node = pair.lead;
     stored.counter = counter;
     stored.kept = kept;
-    stored.coded_map = test::code_map(test::flat_map(pair, disparity_q4));
+    stored.coded_map = test::code_map(map);
     stored.coded_reference = test::code_reference(test::textured_image(pair));
     return stored;
 }
@@ -46,9 +48,9 @@ class SinkExport : public ::testing::Test
   protected:
     SinkExport()
     {
-        store.insert(stored_of(site.pairs[0], 9, 64, true));
-        store.insert(stored_of(site.pairs[0], 10, 64, false));
-        StoredMap yard = stored_of(site.pairs[1], 4000000000u, 128, true);
+        store.insert(stored_of(site.pairs[0], 9, test::flat_map(site.pairs[0], 64), true));
+        store.insert(stored_of(site.pairs[0], 10, test::flat_map(site.pairs[0], 64), false));
+        StoredMap yard = stored_of(site.pairs[1], 4000000000u, test::flat_map(site.pairs[1], 128), true);
         yard.coded_reference.clear();
         store.insert(yard);
     }
@@ -127,6 +129,32 @@ TEST_F(SinkExport, AnEmptyStoreGivesAnEmptyCloud)
     const Store empty(folder / "empty.db", site.pan_id);
     EXPECT_EQ(export_site(site, empty, {}, folder / "out").points, 0u);
     EXPECT_NE(test::read_all(folder / "out/cloud.ply").find("element vertex 0\n"), std::string::npos);
+}
+
+/* The right half a step nearer: what is exported has a slope between, what is stored has not. */
+TEST_F(SinkExport, RestoresWhatItExportsAndNotWhatItStores)
+{
+    const SitePair &pair = site.pairs[0];
+    DecodedMap stairs = test::flat_map(pair, 64);
+    for (std::size_t i = 0; i < stairs.disparity_q4.size(); i++) {
+        stairs.disparity_q4[i] = i % stairs.info.width < stairs.info.width / 2u ? 64 : 68;
+    }
+    store.insert(stored_of(pair, 11, stairs, true));
+    export_site(site, store, {}, folder / "out");
+    const FloatImage exported = read_pfm(folder / "out/maps/00003-0000000011.pfm");
+    const DecodedMap expected = restored(stairs);
+    EXPECT_NE(expected.disparity_q4, stairs.disparity_q4);
+    EXPECT_EQ(exported.pixels, float_disparity(expected.disparity_q4, pair.width, pair.height).pixels);
+    EXPECT_EQ(decode_map(store.last_kept(pair.lead)->coded_map)->disparity_q4, stairs.disparity_q4);
+    const auto points = triangulate(PairGeometry(pair), expected, nullptr);
+    char z[4];
+    std::memcpy(z, &points[static_cast<std::size_t>(pair.width) / 2].z_m, sizeof z);
+    EXPECT_NE(test::read_all(folder / "out/cloud.ply").find(std::string(z, sizeof z)), std::string::npos);
+}
+
+TEST_F(SinkExport, RestoresNoMapThatNoDecoderGives)
+{
+    EXPECT_THROW(restored(test::flat_map(site.pairs[0], 65)), std::invalid_argument);
 }
 
 TEST_F(SinkExport, NamesAFolderItCannotWrite)

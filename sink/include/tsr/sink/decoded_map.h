@@ -31,6 +31,13 @@ std::optional<DecodedMap> decode_map(std::span<const std::uint8_t> coded);
 /* Only pictures with the trained prior are reference images; an image of tsr/codec/gray.h never passes for one. */
 std::optional<GrayImage> decode_reference(std::span<const std::uint8_t> coded);
 
+/*
+ * What is known of the disparities that map was rounded from (tsr/codec/map_restore.h): for geometry and pictures. What
+ * is stored, and compared with other maps, stays as it was sent. Throws std::invalid_argument for what decode_map
+ * does not give.
+ */
+DecodedMap restored(const DecodedMap &map);
+
 } // namespace tsr
 
 #endif

@@ -3,11 +3,12 @@
  * equal stores: no time of day, nothing unsorted.
  *
  *   cloud.ply                       latest kept map of each pair, site metres, coloured
- *   maps/NODE-COUNTER.pfm           each map, disparity in px, +infinity = no match
+ *   maps/NODE-COUNTER.pfm           each map, restored, disparity in px, +infinity = no match
  *   maps/NODE-COUNTER.png           the same in colours (tsr/host/colour_map.h)
  *   maps/NODE-COUNTER-reference.png its reference image, if one came
  *   sink.json                       numbers: per node and pair, and refusals by cause
  *
+ * Cloud, PFM and PNG are of restored maps (tsr/codec/map_restore.h); the maps as sent are in the store.
  * NODE has five digits and COUNTER ten, so names sort as numbers do.
  *
  * SPDX-License-Identifier: Apache-2.0

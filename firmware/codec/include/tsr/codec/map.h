@@ -108,6 +108,7 @@ struct tsr_map_model {
     uint32_t allowed_bits; /* spent more: store literally */
     uint8_t label_bits;
     uint8_t coding;                     /* enum tsr_map_coding */
+    uint8_t run;                        /* where the row was left; docs/codec.md, 2.3 */
     uint16_t cells[TSR_MAP_CELL_COUNT]; /* P(1), UQ0.16 */
 };
 

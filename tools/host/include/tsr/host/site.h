@@ -91,7 +91,7 @@ struct SitePair {
     std::array<double, 2> principal_px{};
     SitePose left;
     std::optional<SitePose> right;
-    double step_px = 0.25;       /* the map's disparity step: 1/16, 1/8, 1/4, 1/2 or 1 */
+    double step_px = 0.5;        /* the map's disparity step: 1/16, 1/8, 1/4, 1/2 or 1 */
     bool reference_image = true; /* send the gray left image that colours the map */
     int reference_step = 35;     /* its quantiser, 0 .. 63; 8 more double the steps of gray */
     std::filesystem::path truth; /* folder of PFM ground truth, for reports; may be empty */

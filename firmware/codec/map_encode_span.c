@@ -1,0 +1,18 @@
+/*
+ * Pieces of rows of a packet, encoded.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include "map_model.h"
+
+#define CONTEXT_SHIFT TSR_MAP_PACKET_SHIFT
+#include "map_encode_side.h"
+#define AGAINST_REFERENCE 0
+#include "map_pixel.h"
+
+void tsr_map_encode_span(struct tsr_map_model *model, struct tsr_range_encoder *range, unsigned first, unsigned end)
+{
+    struct side side = {*range};
+    (void)code_span(model, &side, model->info.near, first, end); /* an encoder's labels exist */
+    *range = side.range;
+}

@@ -1,0 +1,381 @@
+/*
+ * Packets of a map, both ways.
+ *
+ *   bytes 0..3  little-endian: 31..30 format version, 1   29..27 map id   26 literal   25..17 count / 8 - 1   16..0
+ * first / 8 bytes 4..   range-coded labels
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include "tsr/codec/map_packet.h"
+
+#include "map_model.h"
+#include "range_fixed.h"
+#include "tsr/base/bytes.h"
+
+#define GROUP_PIXELS 8u /* counts of pixels are multiples of it, but at the map's end */
+#define COUNT_MAX 4096u
+#define FIRST_BITS 17u
+#define COUNT_BITS 9u
+#define LITERAL_AT 26u
+#define MAP_ID_AT 27u
+#define VERSION_AT 30u
+
+/* Where a pixel lies, and the rest of its row in its strip. */
+struct place {
+    unsigned strip_x, strip_width; /* columns of the strip */
+    unsigned x, y;                 /* x within the strip */
+};
+
+static struct place place_of(const struct tsr_map_info *info, uint32_t position)
+{
+    const uint32_t strip_pixels = (uint32_t)TSR_MAP_PACKET_STRIP_WIDTH * info->height;
+    const unsigned strip_x = position / strip_pixels * TSR_MAP_PACKET_STRIP_WIDTH;
+    const unsigned left = info->width - strip_x;
+    const unsigned strip_width = left < TSR_MAP_PACKET_STRIP_WIDTH ? left : TSR_MAP_PACKET_STRIP_WIDTH;
+    const uint32_t within = position % strip_pixels;
+    return (struct place){strip_x, strip_width, within % strip_width, within / strip_width};
+}
+
+static uint32_t pixels_of(const struct tsr_map_info *info)
+{
+    return (uint32_t)info->width * info->height;
+}
+
+/* What no pixel of the packet has said counts as this label. */
+static void fill_unknown(struct tsr_map_model *model, unsigned label)
+{
+    for (size_t i = 0; i < TSR_MAP_PACKET_SCRATCH_COUNT; i++) {
+        model->scratch[i] = (uint16_t)label;
+    }
+}
+
+static enum tsr_status start_model(struct tsr_map_model *model, const struct tsr_map_info *info, uint32_t position,
+                                   uint16_t *scratch, size_t scratch_cap)
+{
+    if (scratch_cap < TSR_MAP_PACKET_SCRATCH_COUNT) {
+        return TSR_ERR_NOBUF;
+    }
+    struct tsr_map_info strip = *info;
+    strip.width = (uint16_t)place_of(info, position).strip_width;
+    return tsr_map_model_start(model, &strip, NULL, tsr_map_prior.cells[info->near], scratch, scratch_cap);
+}
+
+/* The pixels from first + done to the end of their row in their strip, at most count; the first pixel of a packet is on
+ * its own. Steps into their row, whose unknown left neighbours are as the pixel above. */
+static struct place next_span(struct tsr_map_model *model, const struct tsr_map_info *info, uint32_t first,
+                              uint32_t done, uint32_t count, unsigned *end)
+{
+    const struct place place = place_of(info, first + done);
+    model->row = (uint16_t)place.y;
+    model->allowed_bits = UINT32_MAX / 2u; /* a packet is literal as a whole or not at all */
+    if (place.x == 0 && place.y == 0 && done > 0) {
+        model->info.width = (uint16_t)place.strip_width;
+        fill_unknown(model, model->last_label);
+    }
+    if (place.x == 0 && done > 0) {
+        uint16_t *here = tsr_map_row_labels(model, 0);
+        const uint16_t above = tsr_map_row_labels(model, 1)[0];
+        here[-1] = above;
+        here[-2] = above;
+        here[-3] = above;
+        model->run = 0;
+    }
+    const unsigned left = place.strip_width - place.x;
+    *end = place.x + (done == 0 ? 1u : count < left ? count : left);
+    return place;
+}
+
+/* Once the columns up to end - 1 of a row are known: what follows from them for those that nobody says. */
+static void close_span(struct tsr_map_model *model, const struct place *place, uint32_t done, unsigned end)
+{
+    uint16_t *labels = tsr_map_row_labels(model, 0);
+    if (done == 0) {
+        fill_unknown(model, labels[place->x]);
+    } else if (end == place->strip_width) {
+        labels[end] = labels[end - 1u];
+        labels[end + 1u] = labels[end - 1u];
+    }
+}
+
+static const uint16_t *pixel_at(const uint16_t *map, size_t stride, const struct place *place, unsigned x)
+{
+    return map + place->y * stride + place->strip_x + x;
+}
+
+static uint32_t code_of_label(const struct tsr_map_model *model, unsigned label)
+{
+    return label == model->invalid ? model->label_count : label;
+}
+
+/* Code count pixels after done ones of the packet; false if one is not a value of this map. */
+static bool encode_pixels(struct tsr_map_packet_encoder *encoder, struct tsr_range_encoder *range, uint32_t done,
+                          uint32_t count, bool literal)
+{
+    struct tsr_map_model *model = &encoder->model;
+    for (const uint32_t end_done = done + count; done < end_done;) {
+        unsigned end = 0;
+        const struct place place = next_span(model, &encoder->info, encoder->position, done, end_done - done, &end);
+        uint16_t *labels = tsr_map_row_labels(model, 0);
+        for (unsigned x = place.x; x < end; x++) {
+            const uint16_t value = *pixel_at(encoder->map, encoder->stride, &place, x);
+            if (!tsr_map_is_valid_value(&encoder->info, value)) {
+                return false;
+            }
+            labels[x] = TSR_MAP_LABEL(value, encoder->info.step_log2);
+            if (literal) {
+                tsr_fixed_encode_direct(range, code_of_label(model, labels[x]), model->label_bits);
+            }
+        }
+        if (!literal) {
+            tsr_map_encode_span(model, range, place.x, end);
+        }
+        close_span(model, &place, done, end);
+        done += end - place.x;
+    }
+    return true;
+}
+
+/* Would the stream end within its buffer? */
+static bool would_fit(struct tsr_range_encoder range)
+{
+    uint8_t spare[TSR_RANGE_FINISH_LEN_MAX];
+    size_t len = 0;
+    if (range.at + TSR_RANGE_FINISH_LEN_MAX <= range.cap) {
+        return true;
+    }
+    if (range.at > range.cap) {
+        return false;
+    }
+    /* The tail alone, written elsewhere: a carry out of it changes bytes, not their number. */
+    const size_t left = range.cap - range.at;
+    range.out = spare;
+    range.at = 0;
+    range.cap = left;
+    return tsr_range_encode_finish(&range, &len) == TSR_OK;
+}
+
+/* Back to an earlier state of the same stream. What was coded since may have carried into the bytes before, once: the
+ * number is then one too large there. */
+static void take_back(struct tsr_range_encoder *range, const struct tsr_range_encoder *before, uint8_t last_byte)
+{
+    *range = *before;
+    if (before->at > 0 && before->out[before->at - 1u] != last_byte) {
+        size_t i = before->at;
+        while (i > 0 && before->out[i - 1u]-- == 0) {
+            i--;
+        }
+    }
+}
+
+/* As many groups as fit, at most limit pixels, from the first byte on; false for a bad value. */
+static bool fill(struct tsr_map_packet_encoder *encoder, struct tsr_range_encoder *range, uint32_t limit,
+                 uint32_t *count)
+{
+    for (*count = 0; *count < limit;) {
+        const uint32_t left = limit - *count, group = left < GROUP_PIXELS ? left : GROUP_PIXELS;
+        const struct tsr_range_encoder before = *range;
+        const uint8_t last_byte = before.at > 0 ? before.out[before.at - 1u] : 0;
+        if (!encode_pixels(encoder, range, *count, group, false)) {
+            return false;
+        }
+        if (!would_fit(*range)) {
+            take_back(range, &before, last_byte);
+            break;
+        }
+        *count += group;
+    }
+    return true;
+}
+
+/* Pixels that fit literally, whatever they are: a multiple of the group. */
+static uint32_t literal_count(const struct tsr_map_model *model, size_t payload_cap)
+{
+    return (uint32_t)((payload_cap - TSR_RANGE_FINISH_LEN_MAX) * 8u / model->label_bits) / GROUP_PIXELS * GROUP_PIXELS;
+}
+
+enum tsr_status tsr_map_packets_start(struct tsr_map_packet_encoder *encoder, const struct tsr_map_info *info,
+                                      const uint16_t *map, size_t stride, uint8_t map_id, uint16_t *scratch,
+                                      size_t scratch_cap)
+{
+    if (encoder == NULL || info == NULL || map == NULL || scratch == NULL || map_id > TSR_MAP_PACKET_MAP_ID_MAX ||
+        !tsr_map_is_valid_info(info)) {
+        return TSR_ERR_ARG;
+    }
+    if (stride < info->width) {
+        return TSR_ERR_SIZE;
+    }
+    if (scratch_cap < TSR_MAP_PACKET_SCRATCH_COUNT) {
+        return TSR_ERR_NOBUF;
+    }
+    encoder->info = *info;
+    encoder->map = map;
+    encoder->stride = stride;
+    encoder->scratch = scratch;
+    encoder->map_id = map_id;
+    encoder->position = 0;
+    return TSR_OK;
+}
+
+/* The packet's pixels into its payload: coded, or literally where that holds more. */
+static bool code_payload(struct tsr_map_packet_encoder *encoder, struct tsr_range_encoder *range, uint8_t *payload,
+                         size_t cap, uint32_t limit, struct tsr_map_packet *packet)
+{
+    struct tsr_map_model *model = &encoder->model;
+    (void)start_model(model, &encoder->info, encoder->position, encoder->scratch, TSR_MAP_PACKET_SCRATCH_COUNT);
+    tsr_range_encode_start(range, payload, cap);
+    if (!fill(encoder, range, limit, &packet->count)) {
+        return false;
+    }
+    uint32_t literal = literal_count(model, cap);
+    literal = literal < limit ? literal : limit;
+    packet->is_literal = packet->count < literal;
+    if (packet->is_literal) {
+        packet->count = literal;
+        tsr_range_encode_start(range, payload, cap);
+        return encode_pixels(encoder, range, 0, literal, true);
+    }
+    return true;
+}
+
+enum tsr_status tsr_map_packets_next(struct tsr_map_packet_encoder *encoder, uint8_t *out, size_t out_cap, size_t *len)
+{
+    if (encoder == NULL || out == NULL || len == NULL) {
+        return TSR_ERR_ARG;
+    }
+    if (out_cap < TSR_MAP_PACKET_LEN_MIN) {
+        return TSR_ERR_NOBUF;
+    }
+    const uint32_t left = pixels_of(&encoder->info) - encoder->position;
+    if (left == 0) {
+        return TSR_ERR_SIZE;
+    }
+    struct tsr_map_packet packet = {.map_id = encoder->map_id, .first = encoder->position};
+    struct tsr_range_encoder range;
+    size_t payload_len = 0;
+    if (!code_payload(encoder, &range, out + TSR_MAP_PACKET_HEADER_LEN, out_cap - TSR_MAP_PACKET_HEADER_LEN,
+                      left < COUNT_MAX ? left : COUNT_MAX, &packet)) {
+        return TSR_ERR_ARG;
+    }
+    const enum tsr_status status = tsr_range_encode_finish(&range, &payload_len);
+    if (status != TSR_OK) {
+        return status;
+    }
+    struct tsr_writer writer = tsr_writer_make(out, TSR_MAP_PACKET_HEADER_LEN);
+    tsr_write_u32(&writer, packet.first / GROUP_PIXELS | ((packet.count - 1u) / GROUP_PIXELS) << FIRST_BITS |
+                               (uint32_t)packet.is_literal << LITERAL_AT | (uint32_t)packet.map_id << MAP_ID_AT |
+                               (uint32_t)TSR_MAP_PACKET_FORMAT_VERSION << VERSION_AT);
+    encoder->position += packet.count;
+    *len = TSR_MAP_PACKET_HEADER_LEN + payload_len;
+    return encoder->position < pixels_of(&encoder->info) ? TSR_AGAIN : TSR_OK;
+}
+
+enum tsr_status tsr_map_packets_clear(const struct tsr_map_info *info, uint16_t *map, size_t stride)
+{
+    if (info == NULL || map == NULL) {
+        return TSR_ERR_ARG;
+    }
+    if (stride < info->width) {
+        return TSR_ERR_SIZE;
+    }
+    for (unsigned y = 0; y < info->height; y++) {
+        for (unsigned x = 0; x < info->width; x++) {
+            map[y * stride + x] = TSR_MAP_PIXEL_MISSING;
+        }
+    }
+    return TSR_OK;
+}
+
+static enum tsr_status read_header(const struct tsr_map_info *info, const uint8_t *bytes, size_t len,
+                                   struct tsr_map_packet *packet)
+{
+    if (len < TSR_MAP_PACKET_HEADER_LEN) {
+        return TSR_ERR_FORMAT;
+    }
+    struct tsr_reader reader = tsr_reader_make(bytes, TSR_MAP_PACKET_HEADER_LEN);
+    const uint32_t word = tsr_read_u32(&reader);
+    if (word >> VERSION_AT != TSR_MAP_PACKET_FORMAT_VERSION) {
+        return TSR_ERR_VERSION;
+    }
+    packet->map_id = (uint8_t)(word >> MAP_ID_AT & TSR_MAP_PACKET_MAP_ID_MAX);
+    packet->is_literal = (word >> LITERAL_AT & 1u) != 0;
+    packet->first = (word & ((1u << FIRST_BITS) - 1u)) * GROUP_PIXELS;
+    packet->count = ((word >> FIRST_BITS & ((1u << COUNT_BITS) - 1u)) + 1u) * GROUP_PIXELS;
+    const uint32_t pixels = pixels_of(info);
+    if (packet->first >= pixels || packet->count >= pixels - packet->first + GROUP_PIXELS) {
+        return TSR_ERR_FORMAT;
+    }
+    packet->count = packet->count < pixels - packet->first ? packet->count : pixels - packet->first;
+    return TSR_OK;
+}
+
+/* A literal label; false if it does not exist. */
+static bool decode_literal(const struct tsr_map_model *model, struct tsr_range_decoder *range, uint16_t *label)
+{
+    const uint32_t code = tsr_range_decode_direct(range, model->label_bits);
+    *label = (uint16_t)(code == model->label_count ? model->invalid : code);
+    return code <= model->label_count;
+}
+
+/* Columns first .. end - 1 of a row; gives the end of those that exist. */
+static unsigned decode_labels(struct tsr_map_model *model, struct tsr_range_decoder *range, bool literal,
+                              uint16_t *labels, unsigned first, unsigned end)
+{
+    for (unsigned x = first; x < end; x++) {
+        if (literal ? !decode_literal(model, range, &labels[x]) : !tsr_map_decode_span(model, range, x, x + 1u)) {
+            return x;
+        }
+    }
+    return end;
+}
+
+enum tsr_status tsr_map_packet_decode(struct tsr_map_model *model, const struct tsr_map_info *info, uint8_t map_id,
+                                      const uint8_t *bytes, size_t len, uint16_t *scratch, size_t scratch_cap,
+                                      struct tsr_map_packet *packet, uint16_t *map, size_t stride)
+{
+    if (model == NULL || info == NULL || bytes == NULL || scratch == NULL || packet == NULL || map == NULL ||
+        !tsr_map_is_valid_info(info)) {
+        return TSR_ERR_ARG;
+    }
+    struct tsr_map_packet read;
+    enum tsr_status status = stride < info->width ? TSR_ERR_SIZE : read_header(info, bytes, len, &read);
+    if (status == TSR_OK && read.map_id != map_id) {
+        status = TSR_ERR_NOREF;
+    }
+    if (status == TSR_OK) {
+        status = start_model(model, info, read.first, scratch, scratch_cap);
+    }
+    if (status != TSR_OK) {
+        return status;
+    }
+    struct tsr_range_decoder range;
+    tsr_range_decode_start(&range, bytes + TSR_MAP_PACKET_HEADER_LEN, len - TSR_MAP_PACKET_HEADER_LEN);
+    uint32_t done = 0;
+    while (done < read.count && status == TSR_OK) {
+        unsigned end = 0;
+        const struct place place = next_span(model, info, read.first, done, read.count - done, &end);
+        const uint16_t *labels = tsr_map_row_labels(model, 0);
+        const unsigned decoded =
+            decode_labels(model, &range, read.is_literal, tsr_map_row_labels(model, 0), place.x, end);
+        for (unsigned x = place.x; x < decoded; x++) {
+            map[place.y * stride + place.strip_x + x] =
+                labels[x] == model->invalid ? TSR_DISPARITY_INVALID : (uint16_t)(labels[x] << info->step_log2);
+        }
+        close_span(model, &place, done, decoded);
+        done += decoded - place.x;
+        status = decoded < end ? TSR_ERR_FORMAT : TSR_OK;
+    }
+    read.count = done;
+    *packet = read;
+    return status;
+}
+
+size_t tsr_map_packets_missing(const struct tsr_map_info *info, const uint16_t *map, size_t stride)
+{
+    size_t missing = 0;
+    for (unsigned y = 0; info != NULL && map != NULL && y < info->height; y++) {
+        for (unsigned x = 0; x < info->width; x++) {
+            missing += map[y * stride + x] == TSR_MAP_PIXEL_MISSING;
+        }
+    }
+    return missing;
+}
