@@ -1,4 +1,4 @@
-"""The Cortex-M4 and the host give the same bytes: change, matching, filters, similarity, the three codecs, sealing.
+"""The Cortex-M4 and the host give the same bytes: change, matching, filters, similarity, the codecs, sealing.
 
 The workbench runs on both over the same pictures: the demo's Aloe frames at 160x120 and 320x240, and with TSR_DATA the
 pairs in that folder. On the host it is built with address and undefined-behaviour sanitizers.
