@@ -7,7 +7,7 @@
 #define TSR_CODEC_MAP_DECODE_SIDE_H
 
 #include "map_model.h"
-#include "range_fixed.h"
+#include "range_inline.h"
 
 struct side {
     struct tsr_range_decoder range;

@@ -7,7 +7,7 @@
 #define TSR_CODEC_MAP_ENCODE_SIDE_H
 
 #include "map_model.h"
-#include "range_fixed.h"
+#include "range_inline.h"
 
 struct side {
     struct tsr_range_encoder range;
@@ -34,7 +34,7 @@ static inline bool side_choice(struct side *side, struct tsr_map_model *model, u
 
 static inline uint32_t side_direct(struct side *side, uint32_t value, unsigned bit_count)
 {
-    tsr_fixed_encode_direct(&side->range, value, bit_count);
+    tsr_encode_direct(&side->range, value, bit_count);
     return value;
 }
 

@@ -9,7 +9,7 @@
 #include "tsr/codec/map_packet.h"
 
 #include "map_model.h"
-#include "range_fixed.h"
+#include "range_inline.h"
 #include "tsr/base/bytes.h"
 
 #define GROUP_PIXELS 8u /* counts of pixels are multiples of it, but at the map's end */
@@ -123,7 +123,7 @@ static bool encode_pixels(struct tsr_map_packet_encoder *encoder, struct tsr_ran
             }
             labels[x] = TSR_MAP_LABEL(value, encoder->info.step_log2);
             if (literal) {
-                tsr_fixed_encode_direct(range, code_of_label(model, labels[x]), model->label_bits);
+                tsr_encode_direct(range, code_of_label(model, labels[x]), model->label_bits);
             }
         }
         if (!literal) {

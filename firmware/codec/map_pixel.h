@@ -22,12 +22,10 @@
 #define TSR_CODEC_MAP_PIXEL_H
 
 #include "map_around.h"
+#include "range_port.h"
 
 /* Candidates this near to the prediction are left to the difference. */
 #define CANDIDATE_NEAR 3u
-/* A magnitude's bucket is coded in unary; from SINGLE_COUNT on a bucket has 2, 4, 8 ... values. */
-#define BUCKET_LAST 13u
-#define SINGLE_COUNT 4u
 #define RUN_MAX 16u /* longer runs are alike */
 /* Kinds of candidates: 0 W and N are one; W and N in the order of ask_nearest(), 1 N first, 2 W first, 3 N second, 4 W
  * second; 5 all others. */
@@ -120,8 +118,7 @@ static inline unsigned predict(const struct tsr_map_model *model, const struct a
         return at->still.here;
     }
     if (w != invalid && n != invalid && nw != invalid) {
-        const unsigned high = w > n ? w : n, low = w > n ? n : w;
-        return nw >= high ? low : nw <= low ? high : w + n - nw;
+        return tsr_median_prediction((uint16_t)w, (uint16_t)n, (uint16_t)nw);
     }
     return w != invalid ? w : n != invalid ? n : ne != invalid ? ne : nw != invalid ? nw : model->last_label;
 }
@@ -129,35 +126,26 @@ static inline unsigned predict(const struct tsr_map_model *model, const struct a
 /* 0, 1, 2: below the prediction; as it or no match; above it. */
 static inline unsigned side_of(unsigned neighbour, unsigned predicted, unsigned invalid)
 {
-    return neighbour == invalid ? 1u : 1u + (neighbour > predicted) - (neighbour < predicted);
-}
-
-static inline unsigned bucket_of(uint32_t magnitude)
-{
-    unsigned bucket = magnitude < SINGLE_COUNT ? magnitude : SINGLE_COUNT;
-    while (bucket >= SINGLE_COUNT && bucket < BUCKET_LAST && (magnitude - 2u) >> (bucket - 2u) != 0) {
-        bucket++;
-    }
-    return bucket;
+    return neighbour == invalid ? 1u : tsr_side_of(neighbour, predicted);
 }
 
 static inline uint32_t code_magnitude(struct tsr_map_model *model, struct side *side, unsigned context,
                                       uint32_t magnitude)
 {
-    const unsigned target = bucket_of(magnitude);
+    const unsigned target = tsr_magnitude_bucket(magnitude);
     unsigned bucket = 0;
-    while (bucket < SINGLE_COUNT &&
+    while (bucket < TSR_MAGNITUDE_SINGLES &&
            side_rare_bit(side, model, TSR_MAP_NEARER_AT + 12u * bucket + context, target > bucket)) {
         bucket++;
     }
-    while (bucket >= SINGLE_COUNT && bucket < BUCKET_LAST &&
-           side_rare_bit(side, model, TSR_MAP_FARTHER_AT + bucket - SINGLE_COUNT, target > bucket)) {
+    while (bucket >= TSR_MAGNITUDE_SINGLES && bucket < TSR_MAGNITUDE_BUCKET_LAST &&
+           side_rare_bit(side, model, TSR_MAP_FARTHER_AT + bucket - TSR_MAGNITUDE_SINGLES, target > bucket)) {
         bucket++;
     }
-    if (bucket < SINGLE_COUNT) {
+    if (bucket < TSR_MAGNITUDE_SINGLES) {
         return bucket;
     }
-    const unsigned rest_bits = bucket - SINGLE_COUNT;
+    const unsigned rest_bits = bucket - TSR_MAGNITUDE_SINGLES;
     const uint32_t first = (2u << rest_bits) + 2u;
     const uint32_t place = magnitude - first;
     const uint32_t upper = side_rare_bit(side, model, TSR_MAP_HALF_AT + rest_bits, (place >> rest_bits & 1u) != 0);

@@ -7,10 +7,9 @@
  *
  * SPDX-License-Identifier: Apache-2.0
  */
-#include "tsr/codec/range.h"
+#include "range_inline.h"
 
 #define RANGE_FIRST 0xffffffffu
-#define RANGE_LOW_END (1u << 24) /* renormalise below this */
 #define P_HALF_Q16 0x8000u
 #define P_MIN_Q16 32u /* 2^-11 */
 #define P_MAX_Q16 (65536u - P_MIN_Q16)
@@ -65,56 +64,22 @@ void tsr_range_encode_start(struct tsr_range_encoder *encoder, uint8_t *out, siz
     encoder->range = RANGE_FIRST;
 }
 
-/* low += amount; a carry goes into the bytes before it. The number stays below
- * 1, so a carry always meets a byte that is not 0xff, unless bytes beyond cap
- * are missing from the chain: then the stream is lost anyway. */
-static void raise_low(struct tsr_range_encoder *encoder, uint32_t amount)
-{
-    encoder->low += amount;
-    if (encoder->low >= amount || encoder->at > encoder->cap) {
-        return;
-    }
-    size_t i = encoder->at;
-    while (i > 0 && ++encoder->out[i - 1] == 0) {
-        i--;
-    }
-}
-
-static void shift_out(struct tsr_range_encoder *encoder)
-{
-    if (encoder->at < encoder->cap) {
-        encoder->out[encoder->at] = (uint8_t)(encoder->low >> 24);
-    }
-    encoder->at++;
-    encoder->low <<= 8;
-}
-
-static void renormalise_encoder(struct tsr_range_encoder *encoder)
-{
-    while (encoder->range < RANGE_LOW_END) {
-        shift_out(encoder);
-        encoder->range <<= 8;
-    }
-}
-
 void tsr_range_encode_bit(struct tsr_range_encoder *encoder, struct tsr_range_bit *context, unsigned bit)
 {
     const uint32_t bound = (encoder->range >> 16) * context->p_one_q16;
     if (bit != 0) {
         encoder->range = bound;
     } else {
-        raise_low(encoder, bound);
+        tsr_encoder_raise(encoder, bound);
         encoder->range -= bound;
     }
     learn(context, bit);
-    renormalise_encoder(encoder);
+    tsr_encoder_renormalise(encoder);
 }
 
 void tsr_range_encode_direct(struct tsr_range_encoder *encoder, uint32_t value, unsigned bit_count)
 {
-    encoder->range >>= bit_count;
-    raise_low(encoder, encoder->range * (value & ((1u << bit_count) - 1u)));
-    renormalise_encoder(encoder);
+    tsr_encode_direct(encoder, value & ((1u << bit_count) - 1u), bit_count);
 }
 
 /* The number in [low, low + range) with the most zero bytes at its end becomes the tail. */
@@ -130,9 +95,9 @@ enum tsr_status tsr_range_encode_finish(struct tsr_range_encoder *encoder, size_
         }
         rise = 0;
     }
-    raise_low(encoder, rise);
+    tsr_encoder_raise(encoder, rise);
     for (unsigned i = 0; i < tail_len; i++) {
-        shift_out(encoder);
+        tsr_encoder_shift_out(encoder);
     }
     if (encoder->at > encoder->cap) {
         return TSR_ERR_NOBUF;
@@ -144,13 +109,6 @@ enum tsr_status tsr_range_encode_finish(struct tsr_range_encoder *encoder, size_
     return TSR_OK;
 }
 
-/* at counts what the encoder has shifted out; the decoder has read 4 bytes more. */
-static uint32_t next_byte(const struct tsr_range_decoder *decoder, size_t ahead)
-{
-    const size_t i = decoder->at + ahead;
-    return i < decoder->len ? decoder->bytes[i] : 0u;
-}
-
 void tsr_range_decode_start(struct tsr_range_decoder *decoder, const uint8_t *bytes, size_t len)
 {
     decoder->bytes = bytes;
@@ -159,16 +117,7 @@ void tsr_range_decode_start(struct tsr_range_decoder *decoder, const uint8_t *by
     decoder->range = RANGE_FIRST;
     decoder->offset = 0;
     for (size_t i = 0; i < 4; i++) {
-        decoder->offset = decoder->offset << 8 | next_byte(decoder, i);
-    }
-}
-
-static void renormalise_decoder(struct tsr_range_decoder *decoder)
-{
-    while (decoder->range < RANGE_LOW_END) {
-        decoder->offset = decoder->offset << 8 | next_byte(decoder, 4);
-        decoder->at++;
-        decoder->range <<= 8;
+        decoder->offset = decoder->offset << 8 | tsr_decoder_byte(decoder, i);
     }
 }
 
@@ -183,7 +132,7 @@ unsigned tsr_range_decode_bit(struct tsr_range_decoder *decoder, struct tsr_rang
         decoder->range -= bound;
     }
     learn(context, bit);
-    renormalise_decoder(decoder);
+    tsr_decoder_renormalise(decoder);
     return bit;
 }
 
@@ -199,6 +148,6 @@ uint32_t tsr_range_decode_direct(struct tsr_range_decoder *decoder, unsigned bit
             value |= 1u;
         }
     }
-    renormalise_decoder(decoder);
+    tsr_decoder_renormalise(decoder);
     return value;
 }

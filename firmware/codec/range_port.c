@@ -11,32 +11,18 @@
  */
 #include "range_port.h"
 
-#define SINGLE_COUNT 4u
-
-static unsigned bucket_of(uint32_t magnitude)
-{
-    if (magnitude < SINGLE_COUNT) {
-        return (unsigned)magnitude;
-    }
-    unsigned bucket = SINGLE_COUNT;
-    while (bucket < TSR_MAGNITUDE_BUCKET_LAST && (magnitude - 2u) >> (bucket - 2u) != 0) {
-        bucket++;
-    }
-    return bucket;
-}
-
 uint32_t tsr_port_magnitude(const struct tsr_range_port *port,
                             struct tsr_range_bit contexts[TSR_MAGNITUDE_CONTEXT_COUNT], uint32_t magnitude)
 {
-    const unsigned target = bucket_of(magnitude);
+    const unsigned target = tsr_magnitude_bucket(magnitude);
     unsigned bucket = 0;
     while (bucket < TSR_MAGNITUDE_BUCKET_LAST && tsr_port_bit(port, &contexts[bucket], target > bucket)) {
         bucket++;
     }
-    if (bucket < SINGLE_COUNT) {
+    if (bucket < TSR_MAGNITUDE_SINGLES) {
         return bucket;
     }
-    const unsigned rest_bits = bucket - SINGLE_COUNT;
+    const unsigned rest_bits = bucket - TSR_MAGNITUDE_SINGLES;
     const uint32_t first = (2u << rest_bits) + 2u;
     const uint32_t place = magnitude - first;
     struct tsr_range_bit *const half = &contexts[TSR_MAGNITUDE_BUCKET_LAST + rest_bits];

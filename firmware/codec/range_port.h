@@ -18,6 +18,7 @@
 #define TSR_MAGNITUDE_BUCKET_LAST 13u
 #define TSR_MAGNITUDE_CONTEXT_COUNT (TSR_MAGNITUDE_BUCKET_LAST + 10u)
 #define TSR_MAGNITUDE_MAX 2049u
+#define TSR_MAGNITUDE_SINGLES 4u
 
 /* Exactly one of the two is not null. */
 struct tsr_range_port {
@@ -61,6 +62,17 @@ static inline uint16_t tsr_median_prediction(uint16_t w, uint16_t n, uint16_t nw
     const uint16_t high = w > n ? w : n;
     const uint16_t low = w > n ? n : w;
     return nw >= high ? low : nw <= low ? high : (uint16_t)(w + n - nw);
+}
+
+/* The bucket of a magnitude: the first TSR_MAGNITUDE_SINGLES hold one each, then 2, 4, 8 ... */
+static inline unsigned tsr_magnitude_bucket(uint32_t magnitude)
+{
+    unsigned bucket = magnitude < TSR_MAGNITUDE_SINGLES ? magnitude : TSR_MAGNITUDE_SINGLES;
+    while (bucket >= TSR_MAGNITUDE_SINGLES && bucket < TSR_MAGNITUDE_BUCKET_LAST &&
+           (magnitude - 2u) >> (bucket - 2u) != 0) {
+        bucket++;
+    }
+    return bucket;
 }
 
 /* Code 0 <= magnitude <= TSR_MAGNITUDE_MAX: the bucket in unary, then the place in it. */

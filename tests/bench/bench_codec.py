@@ -1,4 +1,4 @@
-"""The codecs: bytes beside JPEG XL, PNG and JPEG, instructions on a Cortex-M4, memory.
+"""The map codec: bytes beside JPEG XL, instructions on a Cortex-M4, memory.
 
 Maps are this project's matcher's (mode sad, 3x3 median) of the pairs in TSR_DATA (by default ../shared/data beside the source
 tree), at 160x120 and 320x240; each is coded with a prior trained without the pictures of its own set. Needs python3-opencv and

@@ -1,16 +1,14 @@
 /*
- * The range coder for contexts of a fixed rate, in registers.
+ * Steps of the range coder that are short enough to be everywhere: raising and
+ * shifting out, and the contexts of a fixed rate, docs/codec.md, 1.6.
  *
  * The map codec's contexts start from a trained prior, so they need no count of
- * bits seen (docs/codec.md, 1.6): one uint16_t each, P(1) in UQ0.16. A side is
- * one direction of one stream, taken from the coder's struct before a row and
- * put back after it; everything is inline, and a constant direction leaves one
- * direction's code.
+ * bits seen: one uint16_t each, P(1) in UQ0.16.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
-#ifndef TSR_CODEC_RANGE_FIXED_H
-#define TSR_CODEC_RANGE_FIXED_H
+#ifndef TSR_CODEC_RANGE_INLINE_H
+#define TSR_CODEC_RANGE_INLINE_H
 
 #include <stdbool.h>
 
@@ -25,7 +23,9 @@ static inline void tsr_fixed_learn(uint16_t *context, bool bit, unsigned shift)
     *context = (uint16_t)(bit ? p + ((65536u - p) >> shift) : p - (p >> shift));
 }
 
-/* low += amount; a carry goes into the bytes before it, unless they are beyond the buffer. */
+/* low += amount; a carry goes into the bytes before it. The number stays below
+ * 1, so a carry always meets a byte that is not 0xff, unless bytes beyond cap
+ * are missing from the chain: then the stream is lost anyway. */
 static inline void tsr_encoder_raise(struct tsr_range_encoder *encoder, uint32_t amount)
 {
     encoder->low += amount;
@@ -37,14 +37,19 @@ static inline void tsr_encoder_raise(struct tsr_range_encoder *encoder, uint32_t
     }
 }
 
+static inline void tsr_encoder_shift_out(struct tsr_range_encoder *encoder)
+{
+    if (encoder->at < encoder->cap) {
+        encoder->out[encoder->at] = (uint8_t)(encoder->low >> 24);
+    }
+    encoder->at++;
+    encoder->low <<= 8;
+}
+
 static inline void tsr_encoder_renormalise(struct tsr_range_encoder *encoder)
 {
     while (encoder->range < TSR_RANGE_RENORMALISE_BELOW) {
-        if (encoder->at < encoder->cap) {
-            encoder->out[encoder->at] = (uint8_t)(encoder->low >> 24);
-        }
-        encoder->at++;
-        encoder->low <<= 8;
+        tsr_encoder_shift_out(encoder);
         encoder->range <<= 8;
     }
 }
@@ -62,18 +67,24 @@ static inline void tsr_fixed_encode(struct tsr_range_encoder *encoder, uint16_t 
     tsr_encoder_renormalise(encoder);
 }
 
-static inline void tsr_fixed_encode_direct(struct tsr_range_encoder *encoder, uint32_t value, unsigned bit_count)
+static inline void tsr_encode_direct(struct tsr_range_encoder *encoder, uint32_t value, unsigned bit_count)
 {
     encoder->range >>= bit_count;
     tsr_encoder_raise(encoder, encoder->range * value);
     tsr_encoder_renormalise(encoder);
 }
 
+/* at counts what the encoder has shifted out; the decoder has read 4 bytes more. Zeros follow the end. */
+static inline uint32_t tsr_decoder_byte(const struct tsr_range_decoder *decoder, size_t ahead)
+{
+    const size_t i = decoder->at + ahead;
+    return i < decoder->len ? decoder->bytes[i] : 0u;
+}
+
 static inline void tsr_decoder_renormalise(struct tsr_range_decoder *decoder)
 {
     while (decoder->range < TSR_RANGE_RENORMALISE_BELOW) {
-        const size_t i = decoder->at + 4u;
-        decoder->offset = decoder->offset << 8 | (i < decoder->len ? decoder->bytes[i] : 0u);
+        decoder->offset = decoder->offset << 8 | tsr_decoder_byte(decoder, 4);
         decoder->at++;
         decoder->range <<= 8;
     }
