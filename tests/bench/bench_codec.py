@@ -78,10 +78,8 @@ class Maps:
         return self.vision.refine(self.vision.match(left, right, disparities), ("median3",))
 
     def quantised(self, disparity_map, key, step_log2):
-        result = disparity_map.copy()
-        self.vision.LIB.tsr_quantise(self.vision.pointer(result), self.vision.SIZE(result.size),
-                                     self.vision.U8(step_log2), self.vision.U16(self.disparities[key]))
-        return result
+        import map_library
+        return map_library.quantise(disparity_map, self.disparities[key], step_log2)
 
     def families(self):
         return sorted({key[0] for key in self.alone})

@@ -37,10 +37,10 @@ def there_and_back(found, truth, disparities, step_log2):
     """Bytes of one map, and what the receiver has of it; good are the same pixels for every step."""
     good = (truth > 0) & (found != vision_library.INVALID) & (np.abs(found / 16 - truth) <= GOOD_PX)
     sent = map_library.quantise(found, disparities, step_log2)
-    data = map_library.encode(sent, map_library.info_of(sent, disparities, step_log2))
-    decoded, info = map_library.decode(data)
+    data = map_library.CODEC.encode(sent, disparities, step_log2)
+    decoded = map_library.CODEC.decode(data, sent.shape)
     assert np.array_equal(decoded, sent)
-    restored = map_library.restore(decoded, info)
+    restored = map_library.restore(decoded, map_library.info_of(decoded, disparities, step_log2))
     return {"bytes": len(data), **judge(decoded, truth, good),
             **{f"restored_{key}": value for key, value in judge(restored, truth, good).items()}}
 

@@ -41,8 +41,10 @@ def build(prior_source, library):
 
 
 class Codec:
+    """Of a shared library, given by its path or as loaded."""
+
     def __init__(self, library):
-        self.lib = ctypes.CDLL(str(library))
+        self.lib = library if isinstance(library, ctypes.CDLL) else ctypes.CDLL(str(library))
         self.lib.tsr_map_encoded_len_max.restype = SIZE
 
     def encode(self, disparity_map, disparities, step_log2, near=0, reference=None):
