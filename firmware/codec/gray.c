@@ -12,8 +12,8 @@
 
 #include <string.h>
 
+#include "frame.h"
 #include "gray_row.h"
-#include "tsr/base/bytes.h"
 
 /* docs/codec.md, 3.5: a pixel takes at most 16 adaptive bits of 11.01 and 9 direct ones, 24 bytes; 8-bit literals
  * lose 2^-16 of the range by rounding, 1 byte in the largest image. */
@@ -22,8 +22,7 @@ _Static_assert(TSR_GRAY_SLACK_LEN + 1u + 24u + 1u + TSR_RANGE_FINISH_LEN_MAX <= 
 
 static bool is_valid_info(const struct tsr_gray_info *info)
 {
-    return info->width >= 1 && info->width <= TSR_IMAGE_WIDTH_MAX && info->height >= 1 &&
-           info->height <= TSR_IMAGE_HEIGHT_MAX && info->near <= TSR_GRAY_NEAR_BY_ACTIVITY;
+    return tsr_frame_is_valid_size(info->width, info->height) && info->near <= TSR_GRAY_NEAR_BY_ACTIVITY;
 }
 
 size_t tsr_gray_encoded_len_max(const struct tsr_gray_info *info)
@@ -50,24 +49,18 @@ enum tsr_status tsr_gray_encode_start(struct tsr_gray_encoder *encoder, const st
     if (out_cap < TSR_GRAY_HEADER_LEN || scratch_cap < TSR_GRAY_SCRATCH_LEN(info->width)) {
         return TSR_ERR_NOBUF;
     }
-    struct tsr_writer writer = tsr_writer_make(out, TSR_GRAY_HEADER_LEN);
-    tsr_write_u8(&writer, TSR_GRAY_FORMAT_VERSION);
-    tsr_write_u8(&writer, info->near);
-    tsr_write_u16(&writer, info->width);
-    tsr_write_u16(&writer, info->height);
+    tsr_frame_write_header(out, &(struct tsr_frame_header){.version_mode = TSR_GRAY_FORMAT_VERSION,
+                                                           .options = info->near,
+                                                           .width = info->width,
+                                                           .height = info->height});
     start_model(&encoder->model, info, scratch);
     tsr_range_encode_start(&encoder->range, out + TSR_GRAY_HEADER_LEN, out_cap - TSR_GRAY_HEADER_LEN);
     return TSR_OK;
 }
 
-static bool fits(const struct tsr_gray_model *model, size_t stride, uint16_t row_count)
+static unsigned rows_left(const struct tsr_gray_model *model)
 {
-    return stride >= model->info.width && row_count <= model->info.height - model->row;
-}
-
-static enum tsr_status progress(const struct tsr_gray_model *model)
-{
-    return model->row < model->info.height ? TSR_AGAIN : TSR_OK;
+    return (unsigned)model->info.height - model->row;
 }
 
 enum tsr_status tsr_gray_encode_rows(struct tsr_gray_encoder *encoder, const uint8_t *rows, size_t stride,
@@ -76,18 +69,17 @@ enum tsr_status tsr_gray_encode_rows(struct tsr_gray_encoder *encoder, const uin
     if (encoder == NULL || rows == NULL) {
         return TSR_ERR_ARG;
     }
-    if (encoder->range.at > encoder->range.cap) {
-        return TSR_ERR_NOBUF;
-    }
-    if (!fits(&encoder->model, stride, row_count)) {
-        return TSR_ERR_SIZE;
+    const enum tsr_status status =
+        tsr_frame_check_rows(&encoder->range, encoder->model.info.width, rows_left(&encoder->model), stride, row_count);
+    if (status != TSR_OK) {
+        return status;
     }
     const struct tsr_range_port port = {.encoder = &encoder->range};
-    for (uint16_t y = 0; y < row_count && encoder->range.at <= encoder->range.cap; y++) {
+    for (uint16_t y = 0; y < row_count && !tsr_frame_is_lost(&encoder->range); y++) {
         memcpy(tsr_gray_row_pixels(&encoder->model), rows + y * stride, encoder->model.info.width);
         tsr_gray_code_row(&encoder->model, &port);
     }
-    return encoder->range.at > encoder->range.cap ? TSR_ERR_NOBUF : progress(&encoder->model);
+    return tsr_frame_progress(&encoder->range, rows_left(&encoder->model));
 }
 
 enum tsr_status tsr_gray_encode_finish(struct tsr_gray_encoder *encoder, size_t *len)
@@ -95,18 +87,7 @@ enum tsr_status tsr_gray_encode_finish(struct tsr_gray_encoder *encoder, size_t 
     if (encoder == NULL || len == NULL) {
         return TSR_ERR_ARG;
     }
-    if (encoder->range.at > encoder->range.cap) {
-        return TSR_ERR_NOBUF;
-    }
-    if (encoder->model.row < encoder->model.info.height) {
-        return TSR_AGAIN;
-    }
-    size_t payload_len = 0;
-    const enum tsr_status status = tsr_range_encode_finish(&encoder->range, &payload_len);
-    if (status == TSR_OK) {
-        *len = TSR_GRAY_HEADER_LEN + payload_len;
-    }
-    return status;
+    return tsr_frame_finish(&encoder->range, rows_left(&encoder->model), TSR_GRAY_HEADER_LEN, len);
 }
 
 enum tsr_status tsr_gray_read_info(const uint8_t *bytes, size_t len, struct tsr_gray_info *info)
@@ -114,18 +95,14 @@ enum tsr_status tsr_gray_read_info(const uint8_t *bytes, size_t len, struct tsr_
     if (bytes == NULL || info == NULL) {
         return TSR_ERR_ARG;
     }
-    if (len < TSR_GRAY_HEADER_LEN) {
+    struct tsr_frame_header header;
+    if (!tsr_frame_read_header(bytes, len, &header)) {
         return TSR_ERR_FORMAT;
     }
-    struct tsr_reader reader = tsr_reader_make(bytes, len);
-    const uint8_t version_mode = tsr_read_u8(&reader);
-    const uint8_t near_prior = tsr_read_u8(&reader);
-    if (version_mode != TSR_GRAY_FORMAT_VERSION || near_prior >> 4 != 0) {
+    if (header.version_mode != TSR_GRAY_FORMAT_VERSION || header.options >> 4 != 0) {
         return TSR_ERR_VERSION;
     }
-    struct tsr_gray_info read = {.near = near_prior};
-    read.width = tsr_read_u16(&reader);
-    read.height = tsr_read_u16(&reader);
+    const struct tsr_gray_info read = {.width = header.width, .height = header.height, .near = header.options};
     if (!is_valid_info(&read)) {
         return TSR_ERR_FORMAT;
     }
@@ -158,8 +135,10 @@ enum tsr_status tsr_gray_decode_rows(struct tsr_gray_decoder *decoder, uint8_t *
     if (decoder == NULL || rows == NULL) {
         return TSR_ERR_ARG;
     }
-    if (!fits(&decoder->model, stride, row_count)) {
-        return TSR_ERR_SIZE;
+    const enum tsr_status status =
+        tsr_frame_check_rows(NULL, decoder->model.info.width, rows_left(&decoder->model), stride, row_count);
+    if (status != TSR_OK) {
+        return status;
     }
     const struct tsr_range_port port = {.decoder = &decoder->range};
     for (uint16_t y = 0; y < row_count; y++) {
@@ -167,5 +146,5 @@ enum tsr_status tsr_gray_decode_rows(struct tsr_gray_decoder *decoder, uint8_t *
         tsr_gray_code_row(&decoder->model, &port);
         memcpy(rows + y * stride, pixels, decoder->model.info.width);
     }
-    return progress(&decoder->model);
+    return tsr_frame_progress(NULL, rows_left(&decoder->model));
 }

@@ -12,8 +12,8 @@
 
 #include <string.h>
 
+#include "frame.h"
 #include "picture_block.h"
-#include "tsr/base/bytes.h"
 
 #define RATE_CHANGE_MAX 6
 
@@ -24,8 +24,7 @@ _Static_assert(TSR_PICTURE_SLACK_LEN + 1u + 1516u + 4u + 64u + TSR_RANGE_FINISH_
 
 static bool is_valid_info(const struct tsr_picture_info *info)
 {
-    return info->width >= 1 && info->width <= TSR_IMAGE_WIDTH_MAX && info->height >= 1 &&
-           info->height <= TSR_IMAGE_HEIGHT_MAX && info->step <= TSR_PICTURE_STEP_MAX &&
+    return tsr_frame_is_valid_size(info->width, info->height) && info->step <= TSR_PICTURE_STEP_MAX &&
            info->prior <= TSR_PICTURE_PRIOR_TRAINED;
 }
 
@@ -54,11 +53,10 @@ enum tsr_status tsr_picture_encode_start(struct tsr_picture_encoder *encoder, co
     if (out_cap < TSR_PICTURE_HEADER_LEN || scratch_cap < TSR_PICTURE_SCRATCH_LEN(info->width)) {
         return TSR_ERR_NOBUF;
     }
-    struct tsr_writer writer = tsr_writer_make(out, TSR_PICTURE_HEADER_LEN);
-    tsr_write_u8(&writer, TSR_PICTURE_FORMAT_VERSION);
-    tsr_write_u8(&writer, (uint8_t)(info->prior << 6 | info->step));
-    tsr_write_u16(&writer, info->width);
-    tsr_write_u16(&writer, info->height);
+    tsr_frame_write_header(out, &(struct tsr_frame_header){.version_mode = TSR_PICTURE_FORMAT_VERSION,
+                                                           .options = (uint8_t)(info->prior << 6 | info->step),
+                                                           .width = info->width,
+                                                           .height = info->height});
     start_model(&encoder->model, info, scratch);
     tsr_range_encode_start(&encoder->range, out + TSR_PICTURE_HEADER_LEN, out_cap - TSR_PICTURE_HEADER_LEN);
     encoder->target_len = target_len;
@@ -67,14 +65,9 @@ enum tsr_status tsr_picture_encode_start(struct tsr_picture_encoder *encoder, co
     return TSR_OK;
 }
 
-static bool fits(const struct tsr_picture_model *model, size_t stride, uint16_t row_count)
+static unsigned rows_left(const struct tsr_picture_model *model)
 {
-    return stride >= model->info.width && row_count <= model->info.height - model->row;
-}
-
-static enum tsr_status progress(const struct tsr_picture_model *model)
-{
-    return model->row < model->info.height ? TSR_AGAIN : TSR_OK;
+    return (unsigned)model->info.height - model->row;
 }
 
 static unsigned bands_of(const struct tsr_picture_model *model)
@@ -145,14 +138,13 @@ enum tsr_status tsr_picture_encode_rows(struct tsr_picture_encoder *encoder, con
         return TSR_ERR_ARG;
     }
     struct tsr_picture_model *const model = &encoder->model;
-    if (encoder->range.at > encoder->range.cap) {
-        return TSR_ERR_NOBUF;
-    }
-    if (!fits(model, stride, row_count)) {
-        return TSR_ERR_SIZE;
+    const enum tsr_status status =
+        tsr_frame_check_rows(&encoder->range, model->info.width, rows_left(model), stride, row_count);
+    if (status != TSR_OK) {
+        return status;
     }
     const struct tsr_picture_rows band = tsr_picture_rows_of(model);
-    for (uint16_t y = 0; y < row_count && encoder->range.at <= encoder->range.cap; y++) {
+    for (uint16_t y = 0; y < row_count && !tsr_frame_is_lost(&encoder->range); y++) {
         const unsigned in_band = model->row % TSR_PICTURE_BLOCK;
         memcpy(band.pixels + (2u + in_band) * band.stride, rows + y * stride, model->info.width);
         model->row++;
@@ -160,7 +152,7 @@ enum tsr_status tsr_picture_encode_rows(struct tsr_picture_encoder *encoder, con
             encode_band(encoder, &band, in_band + 1u);
         }
     }
-    return encoder->range.at > encoder->range.cap ? TSR_ERR_NOBUF : progress(model);
+    return tsr_frame_progress(&encoder->range, rows_left(model));
 }
 
 enum tsr_status tsr_picture_encode_finish(struct tsr_picture_encoder *encoder, size_t *len)
@@ -168,18 +160,7 @@ enum tsr_status tsr_picture_encode_finish(struct tsr_picture_encoder *encoder, s
     if (encoder == NULL || len == NULL) {
         return TSR_ERR_ARG;
     }
-    if (encoder->range.at > encoder->range.cap) {
-        return TSR_ERR_NOBUF;
-    }
-    if (encoder->model.row < encoder->model.info.height) {
-        return TSR_AGAIN;
-    }
-    size_t payload_len = 0;
-    const enum tsr_status status = tsr_range_encode_finish(&encoder->range, &payload_len);
-    if (status == TSR_OK) {
-        *len = TSR_PICTURE_HEADER_LEN + payload_len;
-    }
-    return status;
+    return tsr_frame_finish(&encoder->range, rows_left(&encoder->model), TSR_PICTURE_HEADER_LEN, len);
 }
 
 enum tsr_status tsr_picture_read_info(const uint8_t *bytes, size_t len, struct tsr_picture_info *info)
@@ -187,18 +168,17 @@ enum tsr_status tsr_picture_read_info(const uint8_t *bytes, size_t len, struct t
     if (bytes == NULL || info == NULL) {
         return TSR_ERR_ARG;
     }
-    if (len < TSR_PICTURE_HEADER_LEN) {
+    struct tsr_frame_header header;
+    if (!tsr_frame_read_header(bytes, len, &header)) {
         return TSR_ERR_FORMAT;
     }
-    struct tsr_reader reader = tsr_reader_make(bytes, len);
-    const uint8_t version_mode = tsr_read_u8(&reader);
-    const uint8_t prior_step = tsr_read_u8(&reader);
-    if (version_mode != TSR_PICTURE_FORMAT_VERSION || prior_step >> 6 > TSR_PICTURE_PRIOR_TRAINED) {
+    if (header.version_mode != TSR_PICTURE_FORMAT_VERSION || header.options >> 6 > TSR_PICTURE_PRIOR_TRAINED) {
         return TSR_ERR_VERSION;
     }
-    struct tsr_picture_info read = {.step = prior_step & 63u, .prior = (uint8_t)(prior_step >> 6)};
-    read.width = tsr_read_u16(&reader);
-    read.height = tsr_read_u16(&reader);
+    const struct tsr_picture_info read = {.width = header.width,
+                                          .height = header.height,
+                                          .step = header.options & 63u,
+                                          .prior = (uint8_t)(header.options >> 6)};
     if (!is_valid_info(&read)) {
         return TSR_ERR_FORMAT;
     }
@@ -239,8 +219,9 @@ enum tsr_status tsr_picture_decode_rows(struct tsr_picture_decoder *decoder, uin
         return TSR_ERR_ARG;
     }
     struct tsr_picture_model *const model = &decoder->model;
-    if (!fits(model, stride, row_count)) {
-        return TSR_ERR_SIZE;
+    const enum tsr_status status = tsr_frame_check_rows(NULL, model->info.width, rows_left(model), stride, row_count);
+    if (status != TSR_OK) {
+        return status;
     }
     const struct tsr_range_port port = {.decoder = &decoder->range};
     const struct tsr_picture_rows band = tsr_picture_rows_of(model);
@@ -251,5 +232,5 @@ enum tsr_status tsr_picture_decode_rows(struct tsr_picture_decoder *decoder, uin
         }
         tsr_picture_smooth_row(model, model->row, rows + y * stride);
     }
-    return progress(model);
+    return tsr_frame_progress(NULL, rows_left(model));
 }

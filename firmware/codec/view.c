@@ -11,10 +11,12 @@
  */
 #include "tsr/codec/view.h"
 
+#include "frame.h"
 #include "tsr/base/bytes.h"
 #include "view_row.h"
 
-#define HEADER_LEN 6u
+#define HEADER_LEN TSR_FRAME_HEADER_LEN
+#define CHECK_LEN 2u
 #define MODE_AGAINST_HELD 1u
 #define COARSE_BIT 0x08u
 #define CAP_BITS 0x07u
@@ -26,8 +28,7 @@ _Static_assert(TSR_VIEW_SLACK_LEN + 1u + 21u + 1u + TSR_RANGE_FINISH_LEN_MAX <= 
 
 static bool is_valid_info(const struct tsr_view_info *info)
 {
-    return info->width >= 1 && info->width <= TSR_IMAGE_WIDTH_MAX && info->height >= 1 &&
-           info->height <= TSR_IMAGE_HEIGHT_MAX && info->cap >= 1 && info->cap <= TSR_VIEW_CAP_MAX &&
+    return tsr_frame_is_valid_size(info->width, info->height) && info->cap >= 1 && info->cap <= TSR_VIEW_CAP_MAX &&
            (!info->coarse || info->cap == TSR_VIEW_CAP_MAX);
 }
 
@@ -37,6 +38,11 @@ size_t tsr_view_encoded_len_max(const struct tsr_view_info *info)
         return 0;
     }
     return TSR_VIEW_ENCODED_LEN_MAX(info->width, info->height);
+}
+
+static size_t header_len_of(const struct tsr_view_info *info)
+{
+    return HEADER_LEN + (info->against_held ? CHECK_LEN : 0u);
 }
 
 /* TSR_OK if the view can be coded with what is held. */
@@ -80,39 +86,38 @@ enum tsr_status tsr_view_encode_start(struct tsr_view_encoder *encoder, const st
     if (out_cap < TSR_VIEW_HEADER_LEN_MAX || scratch_cap < TSR_VIEW_SCRATCH_LEN(info->width)) {
         return TSR_ERR_NOBUF;
     }
-    struct tsr_writer writer = tsr_writer_make(out, TSR_VIEW_HEADER_LEN_MAX);
-    tsr_write_u8(&writer, (uint8_t)(TSR_VIEW_FORMAT_VERSION | (info->against_held ? MODE_AGAINST_HELD << 4 : 0u)));
-    tsr_write_u8(&writer, (uint8_t)(info->cap | (info->coarse ? COARSE_BIT | PRIOR_OF_COARSE << 4 : 0u)));
-    tsr_write_u16(&writer, info->width);
-    tsr_write_u16(&writer, info->height);
-    size_t header_len = HEADER_LEN;
+    const struct tsr_frame_header header = {
+        .version_mode = (uint8_t)(TSR_VIEW_FORMAT_VERSION | (info->against_held ? MODE_AGAINST_HELD << 4 : 0u)),
+        .options = (uint8_t)(info->cap | (info->coarse ? COARSE_BIT | PRIOR_OF_COARSE << 4 : 0u)),
+        .width = info->width,
+        .height = info->height};
+    tsr_frame_write_header(out, &header);
     if (info->against_held) {
+        struct tsr_writer writer = tsr_writer_make(out + HEADER_LEN, CHECK_LEN);
         tsr_write_u16(&writer, held->check);
-        header_len = TSR_VIEW_HEADER_LEN_MAX;
     }
+    const size_t header_len = header_len_of(info);
     encoder->tiles = info->against_held ? tiles : NULL;
     start_model(&encoder->model, info, held, scratch);
     tsr_range_encode_start(&encoder->range, out + header_len, out_cap - header_len);
     return TSR_OK;
 }
 
-static bool fits(const struct tsr_view_model *model, size_t stride, uint16_t row_count)
+static unsigned rows_left(const struct tsr_view_model *model)
 {
-    return stride >= model->info.width && row_count <= model->info.height - model->row;
+    return (unsigned)model->info.height - model->row;
 }
 
 /* After the rows of a call: with the last one the held view is this one. */
-static enum tsr_status progress(struct tsr_view_model *model)
+static enum tsr_status progress(struct tsr_view_model *model, const struct tsr_range_encoder *range)
 {
-    if (model->row < model->info.height) {
-        return TSR_AGAIN;
-    }
-    if (model->held != NULL) {
+    const enum tsr_status status = tsr_frame_progress(range, rows_left(model));
+    if (status == TSR_OK && model->held != NULL) {
         model->held->info = model->info;
         model->held->check = model->check;
         model->held->full = true;
     }
-    return TSR_OK;
+    return status;
 }
 
 enum tsr_status tsr_view_encode_rows(struct tsr_view_encoder *encoder, const uint8_t *rows, size_t stride,
@@ -121,21 +126,20 @@ enum tsr_status tsr_view_encode_rows(struct tsr_view_encoder *encoder, const uin
     if (encoder == NULL || rows == NULL) {
         return TSR_ERR_ARG;
     }
-    if (encoder->range.at > encoder->range.cap) {
-        return TSR_ERR_NOBUF;
-    }
     struct tsr_view_model *model = &encoder->model;
-    if (!fits(model, stride, row_count)) {
-        return TSR_ERR_SIZE;
+    const enum tsr_status status =
+        tsr_frame_check_rows(&encoder->range, model->info.width, rows_left(model), stride, row_count);
+    if (status != TSR_OK) {
+        return status;
     }
     const struct tsr_range_port port = {.encoder = &encoder->range};
     const size_t across = TSR_VIEW_TILES_ACROSS(model->info.width);
-    for (uint16_t y = 0; y < row_count && encoder->range.at <= encoder->range.cap; y++) {
+    for (uint16_t y = 0; y < row_count && !tsr_frame_is_lost(&encoder->range); y++) {
         const uint8_t *tiles = encoder->tiles;
         tiles = tiles != NULL ? tiles + across * (model->row / TSR_VIEW_TILE_PX) : NULL;
         tsr_view_code_row(model, &port, NULL, rows + y * stride, tiles);
     }
-    return encoder->range.at > encoder->range.cap ? TSR_ERR_NOBUF : progress(model);
+    return progress(model, &encoder->range);
 }
 
 enum tsr_status tsr_view_encode_finish(struct tsr_view_encoder *encoder, size_t *len)
@@ -144,45 +148,36 @@ enum tsr_status tsr_view_encode_finish(struct tsr_view_encoder *encoder, size_t 
         return TSR_ERR_ARG;
     }
     struct tsr_view_model *model = &encoder->model;
-    enum tsr_status status = TSR_ERR_NOBUF;
-    size_t payload_len = 0;
-    if (encoder->range.at <= encoder->range.cap) {
-        if (model->row < model->info.height) {
-            return TSR_AGAIN;
-        }
-        status = tsr_range_encode_finish(&encoder->range, &payload_len);
-    }
-    if (status == TSR_OK) {
-        *len = payload_len + (model->info.against_held ? TSR_VIEW_HEADER_LEN_MAX : HEADER_LEN);
-    } else if (model->held != NULL) {
+    const enum tsr_status status =
+        tsr_frame_finish(&encoder->range, rows_left(model), header_len_of(&model->info), len);
+    if (status == TSR_ERR_NOBUF && model->held != NULL) {
         model->held->full = false;
     }
     return status;
 }
 
-/* The header, and where what follows it begins. */
-static __attribute__((noinline)) enum tsr_status
-read_header(const uint8_t *bytes, size_t len, struct tsr_view_info *info, uint16_t *check, size_t *header_len)
+/* The header with the check, which is 0 without one. */
+static __attribute__((noinline)) enum tsr_status read_header(const uint8_t *bytes, size_t len,
+                                                             struct tsr_view_info *info, uint16_t *check)
 {
-    if (len < HEADER_LEN) {
+    struct tsr_frame_header header;
+    if (!tsr_frame_read_header(bytes, len, &header)) {
         return TSR_ERR_FORMAT;
     }
-    struct tsr_reader reader = tsr_reader_make(bytes, len);
-    const uint8_t version_mode = tsr_read_u8(&reader);
-    const uint8_t prior_levels = tsr_read_u8(&reader);
-    const unsigned mode = version_mode >> 4;
-    struct tsr_view_info read = {.cap = prior_levels & CAP_BITS, .coarse = (prior_levels & COARSE_BIT) != 0};
-    if ((version_mode & 15u) != TSR_VIEW_FORMAT_VERSION || mode > MODE_AGAINST_HELD ||
-        prior_levels >> 4 != (read.coarse ? PRIOR_OF_COARSE : 0u)) {
+    const unsigned mode = header.version_mode >> 4;
+    const struct tsr_view_info read = {.width = header.width,
+                                       .height = header.height,
+                                       .cap = header.options & CAP_BITS,
+                                       .coarse = (header.options & COARSE_BIT) != 0,
+                                       .against_held = mode == MODE_AGAINST_HELD};
+    if ((header.version_mode & 15u) != TSR_VIEW_FORMAT_VERSION || mode > MODE_AGAINST_HELD ||
+        header.options >> 4 != (read.coarse ? PRIOR_OF_COARSE : 0u)) {
         return TSR_ERR_VERSION;
     }
-    read.against_held = mode == MODE_AGAINST_HELD;
-    read.width = tsr_read_u16(&reader);
-    read.height = tsr_read_u16(&reader);
-    *header_len = read.against_held ? TSR_VIEW_HEADER_LEN_MAX : HEADER_LEN;
-    if (!is_valid_info(&read) || len < *header_len) {
+    if (!is_valid_info(&read) || len < header_len_of(&read)) {
         return TSR_ERR_FORMAT;
     }
+    struct tsr_reader reader = tsr_reader_make(bytes + HEADER_LEN, len - HEADER_LEN);
     *check = read.against_held ? tsr_read_u16(&reader) : 0u;
     *info = read;
     return TSR_OK;
@@ -191,8 +186,7 @@ read_header(const uint8_t *bytes, size_t len, struct tsr_view_info *info, uint16
 enum tsr_status tsr_view_read_info(const uint8_t *bytes, size_t len, struct tsr_view_info *info)
 {
     uint16_t check = 0;
-    size_t header_len = 0;
-    return bytes == NULL || info == NULL ? TSR_ERR_ARG : read_header(bytes, len, info, &check, &header_len);
+    return bytes == NULL || info == NULL ? TSR_ERR_ARG : read_header(bytes, len, info, &check);
 }
 
 enum tsr_status tsr_view_decode_start(struct tsr_view_decoder *decoder, const uint8_t *bytes, size_t len,
@@ -204,8 +198,7 @@ enum tsr_status tsr_view_decode_start(struct tsr_view_decoder *decoder, const ui
     }
     struct tsr_view_info read;
     uint16_t check = 0;
-    size_t header_len = 0;
-    enum tsr_status status = read_header(bytes, len, &read, &check, &header_len);
+    enum tsr_status status = read_header(bytes, len, &read, &check);
     if (status == TSR_OK) {
         status = check_held(held, &read);
     }
@@ -219,6 +212,7 @@ enum tsr_status tsr_view_decode_start(struct tsr_view_decoder *decoder, const ui
         return status;
     }
     start_model(&decoder->model, &read, held, scratch);
+    const size_t header_len = header_len_of(&read);
     tsr_range_decode_start(&decoder->range, bytes + header_len, len - header_len);
     *info = read;
     return TSR_OK;
@@ -230,12 +224,13 @@ enum tsr_status tsr_view_decode_rows(struct tsr_view_decoder *decoder, uint8_t *
         return TSR_ERR_ARG;
     }
     struct tsr_view_model *model = &decoder->model;
-    if (!fits(model, stride, row_count)) {
-        return TSR_ERR_SIZE;
+    const enum tsr_status status = tsr_frame_check_rows(NULL, model->info.width, rows_left(model), stride, row_count);
+    if (status != TSR_OK) {
+        return status;
     }
     const struct tsr_range_port port = {.decoder = &decoder->range};
     for (uint16_t y = 0; y < row_count; y++) {
         tsr_view_code_row(model, &port, rows + y * stride, NULL, NULL);
     }
-    return progress(model);
+    return progress(model, NULL);
 }
