@@ -1,39 +1,30 @@
 /*
  * Packets of a map, both ways.
  *
- *   bytes 0..3  little-endian: 31..30 format version, 1   29..27 map id   26 literal   25..17 count / 8 - 1   16..0
- * first / 8 bytes 4..   range-coded labels
+ *   bytes 0..3  header of packet.h, of pixels
+ *   bytes 4..   range-coded labels
  *
  * SPDX-License-Identifier: Apache-2.0
  */
 #include "tsr/codec/map_packet.h"
 
 #include "map_model.h"
+#include "packet.h"
 #include "range_inline.h"
-#include "tsr/base/bytes.h"
 
 #define GROUP_PIXELS 8u /* counts of pixels are multiples of it, but at the map's end */
 #define COUNT_MAX 4096u
-#define FIRST_BITS 17u
-#define COUNT_BITS 9u
-#define LITERAL_AT 26u
-#define MAP_ID_AT 27u
-#define VERSION_AT 30u
 
-/* Where a pixel lies, and the rest of its row in its strip. */
-struct place {
-    unsigned strip_x, strip_width; /* columns of the strip */
-    unsigned x, y;                 /* x within the strip */
-};
-
-static struct place place_of(const struct tsr_map_info *info, uint32_t position)
+static struct tsr_packet_grid grid_of(const struct tsr_map_info *info)
 {
-    const uint32_t strip_pixels = (uint32_t)TSR_MAP_PACKET_STRIP_WIDTH * info->height;
-    const unsigned strip_x = position / strip_pixels * TSR_MAP_PACKET_STRIP_WIDTH;
-    const unsigned left = info->width - strip_x;
-    const unsigned strip_width = left < TSR_MAP_PACKET_STRIP_WIDTH ? left : TSR_MAP_PACKET_STRIP_WIDTH;
-    const uint32_t within = position % strip_pixels;
-    return (struct place){strip_x, strip_width, within % strip_width, within / strip_width};
+    return (struct tsr_packet_grid){info->width, info->height, TSR_MAP_PACKET_STRIP_WIDTH, GROUP_PIXELS,
+                                    TSR_PACKET_FIRST_BITS};
+}
+
+static struct tsr_packet_place place_of(const struct tsr_map_info *info, uint32_t position)
+{
+    const struct tsr_packet_grid grid = grid_of(info);
+    return tsr_packet_place_of(&grid, position);
 }
 
 static uint32_t pixels_of(const struct tsr_map_info *info)
@@ -62,10 +53,10 @@ static enum tsr_status start_model(struct tsr_map_model *model, const struct tsr
 
 /* The pixels from first + done to the end of their row in their strip, at most count; the first pixel of a packet is on
  * its own. Steps into their row, whose unknown left neighbours are as the pixel above. */
-static struct place next_span(struct tsr_map_model *model, const struct tsr_map_info *info, uint32_t first,
-                              uint32_t done, uint32_t count, unsigned *end)
+static struct tsr_packet_place next_span(struct tsr_map_model *model, const struct tsr_map_info *info, uint32_t first,
+                                         uint32_t done, uint32_t count, unsigned *end)
 {
-    const struct place place = place_of(info, first + done);
+    const struct tsr_packet_place place = place_of(info, first + done);
     model->row = (uint16_t)place.y;
     model->allowed_bits = UINT32_MAX / 2u; /* a packet is literal as a whole or not at all */
     if (place.x == 0 && place.y == 0 && done > 0) {
@@ -86,7 +77,7 @@ static struct place next_span(struct tsr_map_model *model, const struct tsr_map_
 }
 
 /* Once the columns up to end - 1 of a row are known: what follows from them for those that nobody says. */
-static void close_span(struct tsr_map_model *model, const struct place *place, uint32_t done, unsigned end)
+static void close_span(struct tsr_map_model *model, const struct tsr_packet_place *place, uint32_t done, unsigned end)
 {
     uint16_t *labels = tsr_map_row_labels(model, 0);
     if (done == 0) {
@@ -97,7 +88,7 @@ static void close_span(struct tsr_map_model *model, const struct place *place, u
     }
 }
 
-static const uint16_t *pixel_at(const uint16_t *map, size_t stride, const struct place *place, unsigned x)
+static const uint16_t *pixel_at(const uint16_t *map, size_t stride, const struct tsr_packet_place *place, unsigned x)
 {
     return map + place->y * stride + place->strip_x + x;
 }
@@ -114,7 +105,8 @@ static bool encode_pixels(struct tsr_map_packet_encoder *encoder, struct tsr_ran
     struct tsr_map_model *model = &encoder->model;
     for (const uint32_t end_done = done + count; done < end_done;) {
         unsigned end = 0;
-        const struct place place = next_span(model, &encoder->info, encoder->position, done, end_done - done, &end);
+        const struct tsr_packet_place place =
+            next_span(model, &encoder->info, encoder->position, done, end_done - done, &end);
         uint16_t *labels = tsr_map_row_labels(model, 0);
         for (unsigned x = place.x; x < end; x++) {
             const uint16_t value = *pixel_at(encoder->map, encoder->stride, &place, x);
@@ -135,62 +127,9 @@ static bool encode_pixels(struct tsr_map_packet_encoder *encoder, struct tsr_ran
     return true;
 }
 
-/* Would the stream end within its buffer? */
-static bool would_fit(struct tsr_range_encoder range)
+static bool encode_group(void *encoder, struct tsr_range_encoder *range, uint32_t done, uint32_t count)
 {
-    uint8_t spare[TSR_RANGE_FINISH_LEN_MAX];
-    size_t len = 0;
-    if (range.at + TSR_RANGE_FINISH_LEN_MAX <= range.cap) {
-        return true;
-    }
-    if (range.at > range.cap) {
-        return false;
-    }
-    /* The tail alone, written elsewhere: a carry out of it changes bytes, not their number. */
-    const size_t left = range.cap - range.at;
-    range.out = spare;
-    range.at = 0;
-    range.cap = left;
-    return tsr_range_encode_finish(&range, &len) == TSR_OK;
-}
-
-/* Back to an earlier state of the same stream. What was coded since may have carried into the bytes before, once: the
- * number is then one too large there. */
-static void take_back(struct tsr_range_encoder *range, const struct tsr_range_encoder *before, uint8_t last_byte)
-{
-    *range = *before;
-    if (before->at > 0 && before->out[before->at - 1u] != last_byte) {
-        size_t i = before->at;
-        while (i > 0 && before->out[i - 1u]-- == 0) {
-            i--;
-        }
-    }
-}
-
-/* As many groups as fit, at most limit pixels, from the first byte on; false for a bad value. */
-static bool fill(struct tsr_map_packet_encoder *encoder, struct tsr_range_encoder *range, uint32_t limit,
-                 uint32_t *count)
-{
-    for (*count = 0; *count < limit;) {
-        const uint32_t left = limit - *count, group = left < GROUP_PIXELS ? left : GROUP_PIXELS;
-        const struct tsr_range_encoder before = *range;
-        const uint8_t last_byte = before.at > 0 ? before.out[before.at - 1u] : 0;
-        if (!encode_pixels(encoder, range, *count, group, false)) {
-            return false;
-        }
-        if (!would_fit(*range)) {
-            take_back(range, &before, last_byte);
-            break;
-        }
-        *count += group;
-    }
-    return true;
-}
-
-/* Pixels that fit literally, whatever they are: a multiple of the group. */
-static uint32_t literal_count(const struct tsr_map_model *model, size_t payload_cap)
-{
-    return (uint32_t)((payload_cap - TSR_RANGE_FINISH_LEN_MAX) * 8u / model->label_bits) / GROUP_PIXELS * GROUP_PIXELS;
+    return encode_pixels(encoder, range, done, count, false);
 }
 
 enum tsr_status tsr_map_packets_start(struct tsr_map_packet_encoder *encoder, const struct tsr_map_info *info,
@@ -218,15 +157,15 @@ enum tsr_status tsr_map_packets_start(struct tsr_map_packet_encoder *encoder, co
 
 /* The packet's pixels into its payload: coded, or literally where that holds more. */
 static bool code_payload(struct tsr_map_packet_encoder *encoder, struct tsr_range_encoder *range, uint8_t *payload,
-                         size_t cap, uint32_t limit, struct tsr_map_packet *packet)
+                         size_t cap, uint32_t limit, struct tsr_packet *packet)
 {
     struct tsr_map_model *model = &encoder->model;
     (void)start_model(model, &encoder->info, encoder->position, encoder->scratch, TSR_MAP_PACKET_SCRATCH_COUNT);
     tsr_range_encode_start(range, payload, cap);
-    if (!fill(encoder, range, limit, &packet->count)) {
+    if (!tsr_packet_fill(range, limit, GROUP_PIXELS, encode_group, encoder, &packet->count)) {
         return false;
     }
-    uint32_t literal = literal_count(model, cap);
+    uint32_t literal = tsr_packet_literal_count(cap, model->label_bits, GROUP_PIXELS);
     literal = literal < limit ? literal : limit;
     packet->is_literal = packet->count < literal;
     if (packet->is_literal) {
@@ -249,7 +188,7 @@ enum tsr_status tsr_map_packets_next(struct tsr_map_packet_encoder *encoder, uin
     if (left == 0) {
         return TSR_ERR_SIZE;
     }
-    struct tsr_map_packet packet = {.map_id = encoder->map_id, .first = encoder->position};
+    struct tsr_packet packet = {.id = encoder->map_id, .first = encoder->position};
     struct tsr_range_encoder range;
     size_t payload_len = 0;
     if (!code_payload(encoder, &range, out + TSR_MAP_PACKET_HEADER_LEN, out_cap - TSR_MAP_PACKET_HEADER_LEN,
@@ -260,10 +199,8 @@ enum tsr_status tsr_map_packets_next(struct tsr_map_packet_encoder *encoder, uin
     if (status != TSR_OK) {
         return status;
     }
-    struct tsr_writer writer = tsr_writer_make(out, TSR_MAP_PACKET_HEADER_LEN);
-    tsr_write_u32(&writer, packet.first / GROUP_PIXELS | ((packet.count - 1u) / GROUP_PIXELS) << FIRST_BITS |
-                               (uint32_t)packet.is_literal << LITERAL_AT | (uint32_t)packet.map_id << MAP_ID_AT |
-                               (uint32_t)TSR_MAP_PACKET_FORMAT_VERSION << VERSION_AT);
+    const struct tsr_packet_grid grid = grid_of(&encoder->info);
+    tsr_packet_write_header(out, &grid, TSR_MAP_PACKET_FORMAT_VERSION, &packet);
     encoder->position += packet.count;
     *len = TSR_MAP_PACKET_HEADER_LEN + payload_len;
     return encoder->position < pixels_of(&encoder->info) ? TSR_AGAIN : TSR_OK;
@@ -282,29 +219,6 @@ enum tsr_status tsr_map_packets_clear(const struct tsr_map_info *info, uint16_t 
             map[y * stride + x] = TSR_MAP_PIXEL_MISSING;
         }
     }
-    return TSR_OK;
-}
-
-static enum tsr_status read_header(const struct tsr_map_info *info, const uint8_t *bytes, size_t len,
-                                   struct tsr_map_packet *packet)
-{
-    if (len < TSR_MAP_PACKET_HEADER_LEN) {
-        return TSR_ERR_FORMAT;
-    }
-    struct tsr_reader reader = tsr_reader_make(bytes, TSR_MAP_PACKET_HEADER_LEN);
-    const uint32_t word = tsr_read_u32(&reader);
-    if (word >> VERSION_AT != TSR_MAP_PACKET_FORMAT_VERSION) {
-        return TSR_ERR_VERSION;
-    }
-    packet->map_id = (uint8_t)(word >> MAP_ID_AT & TSR_MAP_PACKET_MAP_ID_MAX);
-    packet->is_literal = (word >> LITERAL_AT & 1u) != 0;
-    packet->first = (word & ((1u << FIRST_BITS) - 1u)) * GROUP_PIXELS;
-    packet->count = ((word >> FIRST_BITS & ((1u << COUNT_BITS) - 1u)) + 1u) * GROUP_PIXELS;
-    const uint32_t pixels = pixels_of(info);
-    if (packet->first >= pixels || packet->count >= pixels - packet->first + GROUP_PIXELS) {
-        return TSR_ERR_FORMAT;
-    }
-    packet->count = packet->count < pixels - packet->first ? packet->count : pixels - packet->first;
     return TSR_OK;
 }
 
@@ -336,11 +250,11 @@ enum tsr_status tsr_map_packet_decode(struct tsr_map_model *model, const struct 
         !tsr_map_is_valid_info(info)) {
         return TSR_ERR_ARG;
     }
-    struct tsr_map_packet read;
-    enum tsr_status status = stride < info->width ? TSR_ERR_SIZE : read_header(info, bytes, len, &read);
-    if (status == TSR_OK && read.map_id != map_id) {
-        status = TSR_ERR_NOREF;
-    }
+    struct tsr_packet read = {.count = 0};
+    const struct tsr_packet_grid grid = grid_of(info);
+    enum tsr_status status =
+        stride < info->width ? TSR_ERR_SIZE
+                             : tsr_packet_read_header(bytes, len, &grid, TSR_MAP_PACKET_FORMAT_VERSION, map_id, &read);
     if (status == TSR_OK) {
         status = start_model(model, info, read.first, scratch, scratch_cap);
     }
@@ -352,7 +266,7 @@ enum tsr_status tsr_map_packet_decode(struct tsr_map_model *model, const struct 
     uint32_t done = 0;
     while (done < read.count && status == TSR_OK) {
         unsigned end = 0;
-        const struct place place = next_span(model, info, read.first, done, read.count - done, &end);
+        const struct tsr_packet_place place = next_span(model, info, read.first, done, read.count - done, &end);
         const uint16_t *labels = tsr_map_row_labels(model, 0);
         const unsigned decoded =
             decode_labels(model, &range, read.is_literal, tsr_map_row_labels(model, 0), place.x, end);
@@ -365,8 +279,8 @@ enum tsr_status tsr_map_packet_decode(struct tsr_map_model *model, const struct 
         done += decoded - place.x;
         status = decoded < end ? TSR_ERR_FORMAT : TSR_OK;
     }
-    read.count = done;
-    *packet = read;
+    *packet =
+        (struct tsr_map_packet){.map_id = read.id, .is_literal = read.is_literal, .first = read.first, .count = done};
     return status;
 }
 
