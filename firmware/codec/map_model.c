@@ -8,6 +8,13 @@
 
 #include <string.h>
 
+/* P(1) of a level, UQ0.16: 1 / (1 + exp((32 - level) / 4)), at most 1 - 64 / 65536, where adaptation would stop. */
+static const uint16_t level_starts[TSR_MAP_LEVEL_COUNT] = {
+    64,    64,    64,    64,    64,    77,    98,    126,   162,   208,   267,   342,   439,   562,   720,   922,
+    1179,  1506,  1921,  2446,  3108,  3938,  4971,  6249,  7812,  9702,  11955, 14595, 17625, 21025, 24743, 28693,
+    32768, 36843, 40793, 44511, 47911, 50941, 53581, 55834, 57724, 59287, 60565, 61598, 62428, 63090, 63615, 64030,
+    64357, 64614, 64816, 64974, 65097, 65194, 65269, 65328, 65374, 65410, 65438, 65459, 65472, 65472, 65472, 65472};
+
 bool tsr_map_is_valid_info(const struct tsr_map_info *info)
 {
     return info->width >= 1 && info->width <= TSR_IMAGE_WIDTH_MAX && info->height >= 1 &&
@@ -46,7 +53,10 @@ enum tsr_status tsr_map_model_start(struct tsr_map_model *model, const struct ts
     model->coding = reference != NULL ? TSR_MAP_CODING_REFERENCE
                     : info->near > 0  ? TSR_MAP_CODING_NEAR
                                       : TSR_MAP_CODING_ALONE;
-    memcpy(model->cells, cells, sizeof model->cells);
+    memcpy(model->cells, cells, TSR_MAP_TRAINED_CELL_COUNT * sizeof model->cells[0]);
+    for (size_t kind = 0; kind < TSR_MAP_KIND_COUNT; kind++) {
+        memcpy(model->cells + TSR_MAP_CANDIDATE_AT + kind * TSR_MAP_LEVEL_COUNT, level_starts, sizeof level_starts);
+    }
     return TSR_OK;
 }
 
@@ -57,7 +67,8 @@ bool tsr_map_is_valid_value(const struct tsr_map_info *info, unsigned value)
            (value < info->disparities * TSR_DISPARITY_ONE_Q4 && (value & below_step) == 0);
 }
 
-/* Two values at once. One that is too large keeps its upper bit in (value | 0x8000) - end. */
+/* Two values at once, in whatever order they lie in a word. One that is too large keeps its upper bit in
+ * (value | 0x8000) - end. */
 bool tsr_map_take_row(struct tsr_map_model *model, const uint16_t *row)
 {
     const struct tsr_map_info *info = &model->info;
@@ -68,15 +79,15 @@ bool tsr_map_take_row(struct tsr_map_model *model, const uint16_t *row)
     uint16_t *labels = tsr_map_row_labels(model, 0);
     unsigned x = 0;
     for (; x + 2u <= width; x += 2) {
-        const uint32_t pair = row[x] | (uint32_t)row[x + 1u] << 16;
+        uint32_t pair;
+        memcpy(&pair, row + x, sizeof pair);
         const uint32_t too_large = (((pair | 0x80008000u) - end_twice) | pair) & 0x80008000u;
         if (((pair & below_step_twice) | too_large) != 0 && pair != UINT32_MAX &&
             !(tsr_map_is_valid_value(info, row[x]) && tsr_map_is_valid_value(info, row[x + 1u]))) {
             return false;
         }
-        const uint32_t both = pair >> step_log2 & labels_twice;
-        labels[x] = (uint16_t)both;
-        labels[x + 1u] = (uint16_t)(both >> 16);
+        pair = pair >> step_log2 & labels_twice;
+        memcpy(labels + x, &pair, sizeof pair);
     }
     if (x < width) {
         labels[x] = TSR_MAP_LABEL(row[x], step_log2);

@@ -37,17 +37,19 @@ _Static_assert(TSR_MAP_SCRATCH_COUNT(0) == TSR_MAP_ROW_COUNT * (TSR_MAP_PAD_LEFT
 
 /* Where each question's contexts begin among the cells. */
 enum {
-    TSR_MAP_FLAT_AT = 0, /* 48: is a flat neighbourhood continued? */
+    TSR_MAP_FLAT_AT = 0,                            /* 48: is a flat neighbourhood continued? */
+    TSR_MAP_INVALID_AT = TSR_MAP_FLAT_AT + 48,      /* 16 x 6: no match? */
+    TSR_MAP_PREDICTED_AT = TSR_MAP_INVALID_AT + 96, /* 6 x 6: the prediction? */
+    TSR_MAP_SIGN_AT = TSR_MAP_PREDICTED_AT + 36,    /* 27: below it? */
+    TSR_MAP_NEARER_AT = TSR_MAP_SIGN_AT + 27,       /* 4 x 12: farther than 0, 1, 2, 3? */
+    TSR_MAP_FARTHER_AT = TSR_MAP_NEARER_AT + 48,    /* 9: beyond bucket 4, 5 ...? */
+    TSR_MAP_HALF_AT = TSR_MAP_FARTHER_AT + 9,       /* 10: in the upper half of its bucket? */
+    TSR_MAP_TRAINED_END = TSR_MAP_HALF_AT + 10,
     /* TSR_MAP_CANDIDATE_AT, by kind and level: is it this label? */
-    TSR_MAP_INVALID_AT = TSR_MAP_CANDIDATE_AT + TSR_MAP_KIND_COUNT * TSR_MAP_LEVEL_COUNT, /* 16 x 6: no match? */
-    TSR_MAP_PREDICTED_AT = TSR_MAP_INVALID_AT + 96,                                       /* 6 x 6: the prediction? */
-    TSR_MAP_SIGN_AT = TSR_MAP_PREDICTED_AT + 36,                                          /* 27: below it? */
-    TSR_MAP_NEARER_AT = TSR_MAP_SIGN_AT + 27,    /* 4 x 12: farther than 0, 1, 2, 3? */
-    TSR_MAP_FARTHER_AT = TSR_MAP_NEARER_AT + 48, /* 9: beyond bucket 4, 5 ...? */
-    TSR_MAP_HALF_AT = TSR_MAP_FARTHER_AT + 9,    /* 10: in the upper half of its bucket? */
-    TSR_MAP_CELLS_END = TSR_MAP_HALF_AT + 10
+    TSR_MAP_CELLS_END = TSR_MAP_CANDIDATE_AT + TSR_MAP_KIND_COUNT * TSR_MAP_LEVEL_COUNT
 };
-_Static_assert(TSR_MAP_CELLS_END == TSR_MAP_CELL_COUNT, "the public header sizes the model");
+_Static_assert(TSR_MAP_TRAINED_END == TSR_MAP_TRAINED_CELL_COUNT && TSR_MAP_CELLS_END == TSR_MAP_CELL_COUNT,
+               "the public headers size the model");
 
 /* What was learned from maps; log-odds in eighths, and P(1) in UQ0.16. A reference has tables and contexts of its own,
  * so that what codes maps alone need not hold them. */
@@ -55,11 +57,11 @@ struct tsr_map_prior {
     uint8_t id;           /* in the header, 1 .. 15 */
     uint16_t matcher_crc; /* of the maps of the matcher it was trained for */
     int8_t weights[TSR_MAP_KIND_COUNT][TSR_MAP_TABLE_COUNT_ALONE][TSR_MAP_TABLE_LEN];
-    uint16_t cells[TSR_MAP_CODING_REFERENCE][TSR_MAP_CELL_COUNT]; /* alone, near */
+    uint16_t cells[TSR_MAP_CODING_REFERENCE][TSR_MAP_TRAINED_CELL_COUNT]; /* alone, near, in packets */
 };
 struct tsr_map_reference_prior {
     int8_t weights[TSR_MAP_KIND_COUNT][TSR_MAP_TABLE_COUNT - TSR_MAP_TABLE_COUNT_ALONE][TSR_MAP_TABLE_LEN];
-    uint16_t cells[TSR_MAP_CELL_COUNT];
+    uint16_t cells[TSR_MAP_TRAINED_CELL_COUNT];
 };
 extern const struct tsr_map_prior tsr_map_prior; /* map_prior.c, made by tarsier train-prior */
 extern const struct tsr_map_reference_prior tsr_map_reference_prior;
@@ -70,14 +72,15 @@ static inline uint16_t *tsr_map_row_labels(const struct tsr_map_model *model, un
     return model->scratch + at * (model->info.width + TSR_MAP_PAD_LEFT + TSR_MAP_PAD_RIGHT) + TSR_MAP_PAD_LEFT;
 }
 
-/* The level of a sum of weights: rounded to half a unit. The bias keeps it positive: eight weights of -128 .. 127. */
+/* The level of a sum of weights: rounded to quarters. The bias keeps it positive: eight weights of -128 .. 127. */
 static inline unsigned tsr_map_level(int sum)
 {
-    const unsigned half_units = (unsigned)(sum + 1024 + 2) / 4u;
-    return half_units < 240u ? 0 : half_units > 271u ? 31u : half_units - 240u;
+    const unsigned quarters = (unsigned)(sum + 1024 + 1) / 2u;
+    return quarters < 480u ? 0 : quarters > 543u ? 63u : quarters - 480u;
 }
 
-/* Check and begin, the contexts from cells: TSR_ERR_ARG, TSR_ERR_SIZE or TSR_ERR_NOBUF as tsr_map_encode_start says. */
+/* Check and begin, the trained contexts as cells[TSR_MAP_TRAINED_CELL_COUNT] say: TSR_ERR_ARG, TSR_ERR_SIZE or
+ * TSR_ERR_NOBUF as tsr_map_encode_start. */
 enum tsr_status tsr_map_model_start(struct tsr_map_model *model, const struct tsr_map_info *info,
                                     const struct tsr_map_reference *reference, const uint16_t *cells, uint16_t *scratch,
                                     size_t scratch_cap);

@@ -8,89 +8,14 @@
  */
 #include "tsr/codec/map_packet.h"
 
-#include "map_model.h"
-#include "packet.h"
+#include "map_strip.h"
 #include "range_inline.h"
 
-#define GROUP_PIXELS 8u /* counts of pixels are multiples of it, but at the map's end */
 #define COUNT_MAX 4096u
-
-static struct tsr_packet_grid grid_of(const struct tsr_map_info *info)
-{
-    return (struct tsr_packet_grid){info->width, info->height, TSR_MAP_PACKET_STRIP_WIDTH, GROUP_PIXELS,
-                                    TSR_PACKET_FIRST_BITS};
-}
-
-static struct tsr_packet_place place_of(const struct tsr_map_info *info, uint32_t position)
-{
-    const struct tsr_packet_grid grid = grid_of(info);
-    return tsr_packet_place_of(&grid, position);
-}
 
 static uint32_t pixels_of(const struct tsr_map_info *info)
 {
     return (uint32_t)info->width * info->height;
-}
-
-/* What no pixel of the packet has said counts as this label. */
-static void fill_unknown(struct tsr_map_model *model, unsigned label)
-{
-    for (size_t i = 0; i < TSR_MAP_PACKET_SCRATCH_COUNT; i++) {
-        model->scratch[i] = (uint16_t)label;
-    }
-}
-
-static enum tsr_status start_model(struct tsr_map_model *model, const struct tsr_map_info *info, uint32_t position,
-                                   uint16_t *scratch, size_t scratch_cap)
-{
-    if (scratch_cap < TSR_MAP_PACKET_SCRATCH_COUNT) {
-        return TSR_ERR_NOBUF;
-    }
-    struct tsr_map_info strip = *info;
-    strip.width = (uint16_t)place_of(info, position).strip_width;
-    return tsr_map_model_start(model, &strip, NULL, tsr_map_prior.cells[info->near], scratch, scratch_cap);
-}
-
-/* The pixels from first + done to the end of their row in their strip, at most count; the first pixel of a packet is on
- * its own. Steps into their row, whose unknown left neighbours are as the pixel above. */
-static struct tsr_packet_place next_span(struct tsr_map_model *model, const struct tsr_map_info *info, uint32_t first,
-                                         uint32_t done, uint32_t count, unsigned *end)
-{
-    const struct tsr_packet_place place = place_of(info, first + done);
-    model->row = (uint16_t)place.y;
-    model->allowed_bits = UINT32_MAX / 2u; /* a packet is literal as a whole or not at all */
-    if (place.x == 0 && place.y == 0 && done > 0) {
-        model->info.width = (uint16_t)place.strip_width;
-        fill_unknown(model, model->last_label);
-    }
-    if (place.x == 0 && done > 0) {
-        uint16_t *here = tsr_map_row_labels(model, 0);
-        const uint16_t above = tsr_map_row_labels(model, 1)[0];
-        here[-1] = above;
-        here[-2] = above;
-        here[-3] = above;
-        model->run = 0;
-    }
-    const unsigned left = place.strip_width - place.x;
-    *end = place.x + (done == 0 ? 1u : count < left ? count : left);
-    return place;
-}
-
-/* Once the columns up to end - 1 of a row are known: what follows from them for those that nobody says. */
-static void close_span(struct tsr_map_model *model, const struct tsr_packet_place *place, uint32_t done, unsigned end)
-{
-    uint16_t *labels = tsr_map_row_labels(model, 0);
-    if (done == 0) {
-        fill_unknown(model, labels[place->x]);
-    } else if (end == place->strip_width) {
-        labels[end] = labels[end - 1u];
-        labels[end + 1u] = labels[end - 1u];
-    }
-}
-
-static const uint16_t *pixel_at(const uint16_t *map, size_t stride, const struct tsr_packet_place *place, unsigned x)
-{
-    return map + place->y * stride + place->strip_x + x;
 }
 
 static uint32_t code_of_label(const struct tsr_map_model *model, unsigned label)
@@ -104,12 +29,11 @@ static bool encode_pixels(struct tsr_map_packet_encoder *encoder, struct tsr_ran
 {
     struct tsr_map_model *model = &encoder->model;
     for (const uint32_t end_done = done + count; done < end_done;) {
-        unsigned end = 0;
-        const struct tsr_packet_place place =
-            next_span(model, &encoder->info, encoder->position, done, end_done - done, &end);
+        const struct tsr_map_span span =
+            tsr_map_strip_next(model, &encoder->info, encoder->position, done, end_done - done);
         uint16_t *labels = tsr_map_row_labels(model, 0);
-        for (unsigned x = place.x; x < end; x++) {
-            const uint16_t value = *pixel_at(encoder->map, encoder->stride, &place, x);
+        for (unsigned x = span.place.x; x < span.end; x++) {
+            const uint16_t value = encoder->map[tsr_map_strip_index(&span, encoder->stride, x)];
             if (!tsr_map_is_valid_value(&encoder->info, value)) {
                 return false;
             }
@@ -119,10 +43,10 @@ static bool encode_pixels(struct tsr_map_packet_encoder *encoder, struct tsr_ran
             }
         }
         if (!literal) {
-            tsr_map_encode_span(model, range, place.x, end);
+            tsr_map_encode_span(model, range, span.place.x, span.end);
         }
-        close_span(model, &place, done, end);
-        done += end - place.x;
+        tsr_map_strip_close(model, &span, done);
+        done += span.end - span.place.x;
     }
     return true;
 }
@@ -160,12 +84,12 @@ static bool code_payload(struct tsr_map_packet_encoder *encoder, struct tsr_rang
                          size_t cap, uint32_t limit, struct tsr_packet *packet)
 {
     struct tsr_map_model *model = &encoder->model;
-    (void)start_model(model, &encoder->info, encoder->position, encoder->scratch, TSR_MAP_PACKET_SCRATCH_COUNT);
+    (void)tsr_map_strip_start(model, &encoder->info, encoder->position, encoder->scratch, TSR_MAP_PACKET_SCRATCH_COUNT);
     tsr_range_encode_start(range, payload, cap);
-    if (!tsr_packet_fill(range, limit, GROUP_PIXELS, encode_group, encoder, &packet->count)) {
+    if (!tsr_packet_fill(range, limit, TSR_MAP_PACKET_GROUP_PIXELS, encode_group, encoder, &packet->count)) {
         return false;
     }
-    uint32_t literal = tsr_packet_literal_count(cap, model->label_bits, GROUP_PIXELS);
+    uint32_t literal = tsr_packet_literal_count(cap, model->label_bits, TSR_MAP_PACKET_GROUP_PIXELS);
     literal = literal < limit ? literal : limit;
     packet->is_literal = packet->count < literal;
     if (packet->is_literal) {
@@ -199,7 +123,7 @@ enum tsr_status tsr_map_packets_next(struct tsr_map_packet_encoder *encoder, uin
     if (status != TSR_OK) {
         return status;
     }
-    const struct tsr_packet_grid grid = grid_of(&encoder->info);
+    const struct tsr_packet_grid grid = tsr_map_packet_grid(&encoder->info);
     tsr_packet_write_header(out, &grid, TSR_MAP_PACKET_FORMAT_VERSION, &packet);
     encoder->position += packet.count;
     *len = TSR_MAP_PACKET_HEADER_LEN + payload_len;
@@ -251,12 +175,12 @@ enum tsr_status tsr_map_packet_decode(struct tsr_map_model *model, const struct 
         return TSR_ERR_ARG;
     }
     struct tsr_packet read = {.count = 0};
-    const struct tsr_packet_grid grid = grid_of(info);
+    const struct tsr_packet_grid grid = tsr_map_packet_grid(info);
     enum tsr_status status =
         stride < info->width ? TSR_ERR_SIZE
                              : tsr_packet_read_header(bytes, len, &grid, TSR_MAP_PACKET_FORMAT_VERSION, map_id, &read);
     if (status == TSR_OK) {
-        status = start_model(model, info, read.first, scratch, scratch_cap);
+        status = tsr_map_strip_start(model, info, read.first, scratch, scratch_cap);
     }
     if (status != TSR_OK) {
         return status;
@@ -265,19 +189,21 @@ enum tsr_status tsr_map_packet_decode(struct tsr_map_model *model, const struct 
     tsr_range_decode_start(&range, bytes + TSR_MAP_PACKET_HEADER_LEN, len - TSR_MAP_PACKET_HEADER_LEN);
     uint32_t done = 0;
     while (done < read.count && status == TSR_OK) {
-        unsigned end = 0;
-        const struct tsr_packet_place place = next_span(model, info, read.first, done, read.count - done, &end);
-        const uint16_t *labels = tsr_map_row_labels(model, 0);
-        const unsigned decoded =
-            decode_labels(model, &range, read.is_literal, tsr_map_row_labels(model, 0), place.x, end);
-        for (unsigned x = place.x; x < decoded; x++) {
-            map[place.y * stride + place.strip_x + x] =
+        struct tsr_map_span span = tsr_map_strip_next(model, info, read.first, done, read.count - done);
+        const unsigned asked = span.end;
+        uint16_t *labels = tsr_map_row_labels(model, 0);
+        span.end = decode_labels(model, &range, read.is_literal, labels, span.place.x, asked);
+        for (unsigned x = span.place.x; x < span.end; x++) {
+            map[tsr_map_strip_index(&span, stride, x)] =
                 (uint16_t)(labels[x] == model->invalid ? TSR_DISPARITY_INVALID
                                                        : (unsigned)labels[x] << info->step_log2);
         }
-        close_span(model, &place, done, decoded);
-        done += decoded - place.x;
-        status = decoded < end ? TSR_ERR_FORMAT : TSR_OK;
+        done += span.end - span.place.x;
+        if (span.end < asked) {
+            status = TSR_ERR_FORMAT;
+            break;
+        }
+        tsr_map_strip_close(model, &span, done - (span.end - span.place.x));
     }
     *packet =
         (struct tsr_map_packet){.map_id = read.id, .is_literal = read.is_literal, .first = read.first, .count = done};

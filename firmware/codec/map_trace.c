@@ -12,16 +12,6 @@ uint16_t tsr_map_prior_matcher_crc(void)
     return tsr_map_prior.matcher_crc;
 }
 
-unsigned tsr_map_candidate_level(const int8_t weights[TSR_MAP_TABLE_COUNT][TSR_MAP_TABLE_LEN],
-                                 const uint8_t index[TSR_MAP_TABLE_COUNT], unsigned table_count)
-{
-    int sum = 0;
-    for (unsigned table = 0; table < table_count; table++) {
-        sum += weights[table][index[table]];
-    }
-    return tsr_map_level(sum);
-}
-
 enum tsr_status tsr_map_trace(struct tsr_map_model *model, const struct tsr_map_info *info,
                               const struct tsr_map_reference *reference, const uint16_t *map, uint16_t *scratch,
                               size_t scratch_cap, tsr_map_question_fn tell, void *user)

@@ -57,5 +57,6 @@ static inline size_t side_spent_bits(const struct side *side)
 
 void tsr_map_trace_row(struct tsr_map_model *model, struct side *side);
 void tsr_map_trace_reference_row(struct tsr_map_model *model, struct side *side);
+void tsr_map_trace_span(struct tsr_map_model *model, struct side *side, unsigned first, unsigned end);
 
 #endif

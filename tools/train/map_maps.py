@@ -5,7 +5,7 @@
     tarsier train-prior OUT/maps OUT/sequences -o firmware/codec/map_prior.c
 
 DATA is searched for the rectified pairs in PAIRS. Each is cropped to 4:3, reduced to the sizes of the product and matched
-by `tarsier match` in the modes of MODES, upright and upside down: OUT/maps. OUT/sequences has a folder for every scene of
+by `tarsier match` as nodes do unless told otherwise, upright and upside down: OUT/maps. OUT/sequences has a folder for every scene of
 one static camera, two maps each: a pair with noise, and the same with other noise and a part of another picture in front.
 TSR_BUILD names the build's folder, by default build/release. Needs NumPy and OpenCV.
 
@@ -27,7 +27,7 @@ import stereo_pairs
 
 TARSIER = pathlib.Path(os.environ.get("TSR_BUILD", ROOT / "build/release")) / "bin/tarsier"
 PAIRS = ("mb*/left.png", "boofcv_bumblebee2/rectified/*_left.png")
-MODES = {"sad": "median3", "smooth": "median5,speckle"}  # mode: its filters
+MODE, REFINE = "sad", "median3"
 SCENES = 2  # of a pair and size
 NOISE = 1.0  # gray levels, standard deviation
 AREA = (0.1, 0.3)  # of the picture, that the new object takes
@@ -49,13 +49,13 @@ def pairs(data):
             yield f"{left.parent.name}_{left.stem}", read(left), read(right)
 
 
-def match(left, right, disparities, mode, out):
+def match(left, right, disparities, out):
     out.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         files = [pathlib.Path(folder) / f"{side}.pgm" for side in ("left", "right")]
         for file, picture in zip(files, (left, right)):
             cv2.imwrite(str(file), picture)
-        words = [TARSIER, "match", *files, "--disparities", disparities, "--mode", mode, "--refine", MODES[mode], "-o", out]
+        words = [TARSIER, "match", *files, "--disparities", disparities, "--mode", MODE, "--refine", REFINE, "-o", out]
         subprocess.run([str(word) for word in words], check=True, stdout=subprocess.DEVNULL)
 
 
@@ -86,15 +86,13 @@ def main():
     for i, (name, *views) in enumerate(found):
         for width, height, disparities in stereo_pairs.CASES:
             left, right = (stereo_pairs.reduced(view, width, height) for view in views)
-            for mode in MODES:
-                for turned, step in (("", 1), ("_turned", -1)):
-                    match(left[::step], right[::step], disparities, mode,
-                          options.out / f"maps/{name}_{width}_{mode}{turned}.pfm")
+            for turned, step in (("", 1), ("_turned", -1)):
+                match(left[::step], right[::step], disparities, options.out / f"maps/{name}_{width}{turned}.pfm")
             other = stereo_pairs.reduced(found[(i + 3) % len(found)][1], width, height)
             for scene in range(SCENES):
                 later = with_object(left, right, other, disparities)
                 for number, (a, b) in enumerate(((left, right), later)):
-                    match(noisy(a), noisy(b), disparities, "sad",
+                    match(noisy(a), noisy(b), disparities,
                           options.out / f"sequences/{name}_{width}_{scene}/{number}.pfm")
     print(f"{options.out}: {len(found)} pairs")
 

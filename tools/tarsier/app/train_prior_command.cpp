@@ -21,6 +21,10 @@
 #include "tsr/host/output_files.h"
 #include "tsr/stereo/disparity_file.h"
 
+extern "C" {
+#include "tsr/codec/map_hold.h"
+}
+
 namespace tsr
 {
 namespace
@@ -63,6 +67,14 @@ Folder read_folder(const std::filesystem::path &path)
     return folder;
 }
 
+/* As a node does before it codes a map against another. */
+void hold(const tsr_map_info &info, const std::vector<std::uint16_t> &reference, std::vector<std::uint16_t> &values)
+{
+    const tsr_map_reference held{reference.data(), info.width, 0};
+    std::vector<std::uint16_t> scratch(TSR_MAP_HOLD_SCRATCH_COUNT(info.width));
+    tsr_map_hold(&info, &held, values.data(), info.width, scratch.data(), scratch.size(), nullptr);
+}
+
 void add(MapPriorTrainer &trainer, const TrainOptions &options, const DisparityValues &map,
          const DisparityValues *earlier)
 {
@@ -73,8 +85,13 @@ void add(MapPriorTrainer &trainer, const TrainOptions &options, const DisparityV
         info.disparities = map.disparities;
         info.step_log2 = log2_of_step(step);
         for (info.near = 0; info.near <= TSR_MAP_NEAR_MAX; info.near++) {
-            trainer.add(info, quantised(map, info.step_log2),
-                        earlier != nullptr ? quantised(*earlier, info.step_log2) : std::vector<std::uint16_t>{});
+            auto values = quantised(map, info.step_log2);
+            std::vector<std::uint16_t> reference;
+            if (earlier != nullptr) {
+                reference = quantised(*earlier, info.step_log2);
+                hold(info, reference, values);
+            }
+            trainer.add(info, values, reference);
         }
     }
 }

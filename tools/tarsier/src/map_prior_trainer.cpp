@@ -12,6 +12,10 @@
 
 #include <fmt/format.h>
 
+extern "C" {
+#include "tsr/codec/map_packet.h"
+}
+
 namespace tsr
 {
 namespace
@@ -19,13 +23,12 @@ namespace
 
 constexpr int kEpochs = 6;
 constexpr double kRate = 0.1;
-constexpr double kFirstSquare = 1e-3;       /* keeps AdaGrad's first steps short */
-constexpr std::size_t kStride = 7919;       /* prime: questions are met in an order that mixes the maps */
-constexpr double kPseudoCount = 2;          /* a context seen n times counts its start as so many more */
-constexpr int kProbabilityMin = 64;         /* Q16: where adaptation would stop anyway */
-constexpr int kProbabilityMax = 65536 - 64; /* Q16 */
-constexpr double kLevelStep = 0.5;          /* log-odds of a level */
-constexpr int kLevelZero = TSR_MAP_LEVEL_COUNT / 2;
+constexpr double kFirstSquare = 1e-3;        /* keeps AdaGrad's first steps short */
+constexpr std::size_t kStride = 7919;        /* prime: questions are met in an order that mixes the maps */
+constexpr double kPseudoCount = 2;           /* a context seen n times counts its start as so many more */
+constexpr int kProbabilityMin = 64;          /* Q16: where adaptation would stop anyway */
+constexpr int kProbabilityMax = 65536 - 64;  /* Q16 */
+constexpr std::uint32_t kPacketPixels = 768; /* about what a packet of 90 bytes holds of a map of 160x120 or 320x240 */
 
 template <typename Value>
 using Tables = std::array<std::array<std::array<Value, TSR_MAP_TABLE_LEN>, TSR_MAP_TABLE_COUNT>, TSR_MAP_KIND_COUNT>;
@@ -61,17 +64,6 @@ std::int8_t rounded_weight(double weight)
     return static_cast<std::int8_t>(std::clamp(std::lround(weight * TSR_MAP_WEIGHT_SCALE), -127L, 127L));
 }
 
-/* Probability of a 1 before anything was counted: the middle of a candidate's level, else a half. */
-double start_of(std::size_t cell)
-{
-    const std::size_t end = TSR_MAP_CANDIDATE_AT + std::size_t{TSR_MAP_KIND_COUNT} * TSR_MAP_LEVEL_COUNT;
-    if (cell < TSR_MAP_CANDIDATE_AT || cell >= end) {
-        return 0.5;
-    }
-    const int level = static_cast<int>((cell - TSR_MAP_CANDIDATE_AT) % TSR_MAP_LEVEL_COUNT);
-    return logistic((level - kLevelZero) * kLevelStep);
-}
-
 void keep(void *user, const tsr_map_question *question)
 {
     static_cast<std::vector<tsr_map_question> *>(user)->push_back(*question);
@@ -91,6 +83,22 @@ void MapPriorTrainer::add(const tsr_map_info &info, std::span<const std::uint16_
                       scratch.size(), keep, &questions_) != TSR_OK) {
         throw std::invalid_argument("a map that its info does not admit");
     }
+    if (reference.empty() && info.near == 0) {
+        add_packets(info, map);
+    }
+}
+
+void MapPriorTrainer::add_packets(const tsr_map_info &info, std::span<const std::uint16_t> map)
+{
+    const auto model = std::make_unique<tsr_map_model>();
+    std::array<std::uint16_t, TSR_MAP_PACKET_SCRATCH_COUNT> scratch;
+    const auto pixels = static_cast<std::uint32_t>(map.size());
+    for (std::uint32_t first = 0; first < pixels; first += kPacketPixels) {
+        if (tsr_map_trace_packet(model.get(), &info, map.data(), first, std::min(kPacketPixels, pixels - first),
+                                 scratch.data(), scratch.size(), keep, &questions_) != TSR_OK) {
+            throw std::invalid_argument("a map that its info does not admit");
+        }
+    }
 }
 
 MapPrior MapPriorTrainer::train() const
@@ -98,7 +106,7 @@ MapPrior MapPriorTrainer::train() const
     auto regression = std::make_unique<Regression>();
     for (int epoch = 0; epoch < kEpochs; epoch++) {
         for (std::size_t i = 0, at = 0; i < questions_.size(); i++, at = (at + kStride) % questions_.size()) {
-            if (questions_[at].is_candidate && questions_[at].coding != TSR_MAP_CODING_NEAR) {
+            if (questions_[at].is_candidate) {
                 regression->learn(questions_[at]);
             }
         }
@@ -109,22 +117,16 @@ MapPrior MapPriorTrainer::train() const
             std::ranges::transform(regression->weight[kind][table], prior.weights[kind][table].begin(), rounded_weight);
         }
     }
-    std::vector<std::array<double, 2>> counts(TSR_MAP_CODING_COUNT * TSR_MAP_CELL_COUNT);
+    std::vector<std::array<double, 2>> counts(TSR_MAP_CODING_COUNT * TSR_MAP_TRAINED_CELL_COUNT);
     for (const tsr_map_question &question : questions_) {
-        std::size_t cell = question.cell;
-        if (question.is_candidate) {
-            const auto *weights =
-                reinterpret_cast<const std::int8_t(*)[TSR_MAP_TABLE_LEN]>(prior.weights[question.kind].data());
-            cell = TSR_MAP_CANDIDATE_AT + std::size_t{question.kind} * TSR_MAP_LEVEL_COUNT +
-                   tsr_map_candidate_level(weights, question.index, question.table_count);
+        if (!question.is_candidate) {
+            counts[question.coding * TSR_MAP_TRAINED_CELL_COUNT + question.cell][question.bit ? 1 : 0]++;
         }
-        counts[question.coding * TSR_MAP_CELL_COUNT + cell][question.bit ? 1 : 0]++;
     }
     for (std::size_t i = 0; i < counts.size(); i++) {
-        const std::size_t cell = i % TSR_MAP_CELL_COUNT;
         const auto [zeros, ones] = counts[i];
-        const double p = (ones + kPseudoCount * start_of(cell)) / (zeros + ones + kPseudoCount);
-        prior.cells[i / TSR_MAP_CELL_COUNT][cell] =
+        const double p = (ones + kPseudoCount / 2) / (zeros + ones + kPseudoCount);
+        prior.cells[i / TSR_MAP_TRAINED_CELL_COUNT][i % TSR_MAP_TRAINED_CELL_COUNT] =
             static_cast<std::uint16_t>(std::clamp<long>(std::lround(p * 65536), kProbabilityMin, kProbabilityMax));
     }
     return prior;

@@ -41,7 +41,7 @@
 #include "tsr/codec/range.h"
 
 /* Version of the coded format, not of the library. */
-#define TSR_MAP_FORMAT_VERSION 2
+#define TSR_MAP_FORMAT_VERSION 3
 #define TSR_MAP_HEADER_LEN 9
 /* With a reference its id follows the header. */
 #define TSR_MAP_HEADER_LEN_MAX 11
@@ -94,7 +94,7 @@ struct tsr_map_reference {
      TSR_MAP_EXCESS_LEN)
 
 /* Number of adaptive bits of the model. */
-#define TSR_MAP_CELL_COUNT 466
+#define TSR_MAP_CELL_COUNT 658
 
 /* What both directions share. Content private to the codec. */
 struct tsr_map_model {

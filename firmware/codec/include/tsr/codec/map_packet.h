@@ -11,7 +11,7 @@
  *   encode   tsr_map_packets_start ─► tsr_map_packets_next (TSR_AGAIN) ... (TSR_OK)
  *   decode   tsr_map_packets_clear ─► tsr_map_packet_decode ... ─► tsr_map_packets_missing
  *
- * Pixels are counted in strips of 32 columns (the last one may be narrower), a
+ * Pixels are counted in strips of 40 columns (the last one may be narrower), a
  * strip from top to bottom, its rows from the left. All buffers are the caller's.
  *
  * SPDX-License-Identifier: Apache-2.0
@@ -21,13 +21,13 @@
 
 #include "tsr/codec/map.h"
 
-/* Of the packets, of a map's labels and of their prior together: 1 is map format 2 with prior 1. */
-#define TSR_MAP_PACKET_FORMAT_VERSION 1
+/* Of the packets, of a map's labels and of their prior together: 2 is map format 3 with prior 2. */
+#define TSR_MAP_PACKET_FORMAT_VERSION 2
 #define TSR_MAP_PACKET_HEADER_LEN 4
 /* A header and eight literal pixels with the range coder's end always fit. */
 #define TSR_MAP_PACKET_LEN_MIN 20
 #define TSR_MAP_PACKET_MAP_ID_MAX 7
-#define TSR_MAP_PACKET_STRIP_WIDTH 32
+#define TSR_MAP_PACKET_STRIP_WIDTH 40
 /* Elements of the uint16_t scratch rows. */
 #define TSR_MAP_PACKET_SCRATCH_COUNT TSR_MAP_SCRATCH_COUNT(TSR_MAP_PACKET_STRIP_WIDTH)
 

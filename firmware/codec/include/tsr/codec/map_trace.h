@@ -16,15 +16,18 @@
 #define TSR_MAP_TABLE_COUNT_ALONE 5
 #define TSR_MAP_TABLE_COUNT 8
 #define TSR_MAP_TABLE_LEN 64
-#define TSR_MAP_LEVEL_COUNT 32
-#define TSR_MAP_WEIGHT_SCALE 8 /* weights are log-odds times this; a level is half a unit of log-odds */
-/* The first candidate's context: kind k has cells TSR_MAP_CANDIDATE_AT + k * TSR_MAP_LEVEL_COUNT + level. */
-#define TSR_MAP_CANDIDATE_AT 48
+#define TSR_MAP_LEVEL_COUNT 64
+#define TSR_MAP_WEIGHT_SCALE 8 /* weights are log-odds times this; a level is a quarter of log-odds */
+/* Contexts that start as trained; after them kind k of a candidate has cells TSR_MAP_CANDIDATE_AT + k *
+ * TSR_MAP_LEVEL_COUNT + level, which start as their level says. */
+#define TSR_MAP_TRAINED_CELL_COUNT 274
+#define TSR_MAP_CANDIDATE_AT TSR_MAP_TRAINED_CELL_COUNT
 
 /* What a map was coded as decides where its contexts start. */
 enum tsr_map_coding {
     TSR_MAP_CODING_ALONE,
-    TSR_MAP_CODING_NEAR,
+    TSR_MAP_CODING_NEAR, /* in packets or not */
+    TSR_MAP_CODING_PACKET,
     TSR_MAP_CODING_REFERENCE, /* near or not */
     TSR_MAP_CODING_COUNT
 };
@@ -44,10 +47,6 @@ typedef void (*tsr_map_question_fn)(void *user, const struct tsr_map_question *q
 /* The fingerprint of the matcher whose maps this build's prior was made from (tools/tarsier, matcher_fingerprint()). */
 uint16_t tsr_map_prior_matcher_crc(void);
 
-/* The context of a candidate under these weights (log-odds in eighths, of one kind): its sum in levels, 0 .. 31. */
-unsigned tsr_map_candidate_level(const int8_t weights[TSR_MAP_TABLE_COUNT][TSR_MAP_TABLE_LEN],
-                                 const uint8_t index[TSR_MAP_TABLE_COUNT], unsigned table_count);
-
 /*
  * Tell every question of a map, borrowed, width elements a row; info and reference as for tsr_map_encode_start, model
  * and scratch used meanwhile. Returns TSR_OK, or what tsr_map_encode_start or tsr_map_encode_rows would refuse.
@@ -55,5 +54,14 @@ unsigned tsr_map_candidate_level(const int8_t weights[TSR_MAP_TABLE_COUNT][TSR_M
 enum tsr_status tsr_map_trace(struct tsr_map_model *model, const struct tsr_map_info *info,
                               const struct tsr_map_reference *reference, const uint16_t *map, uint16_t *scratch,
                               size_t scratch_cap, tsr_map_question_fn tell, void *user);
+
+/*
+ * The same for the pixels first .. first + count - 1 of a map, as a packet that holds them is coded
+ * (tsr/codec/map_packet.h); scratch_cap >= TSR_MAP_PACKET_SCRATCH_COUNT. Returns what tsr_map_packets_start or
+ * tsr_map_packets_next would, TSR_ERR_SIZE for pixels beyond the map.
+ */
+enum tsr_status tsr_map_trace_packet(struct tsr_map_model *model, const struct tsr_map_info *info, const uint16_t *map,
+                                     uint32_t first, uint32_t count, uint16_t *scratch, size_t scratch_cap,
+                                     tsr_map_question_fn tell, void *user);
 
 #endif

@@ -25,14 +25,14 @@ namespace tsr
 struct MapPrior {
     using Weights = std::array<std::array<std::int8_t, TSR_MAP_TABLE_LEN>, TSR_MAP_TABLE_COUNT>;
     std::array<Weights, TSR_MAP_KIND_COUNT> weights{};
-    std::array<std::array<std::uint16_t, TSR_MAP_CELL_COUNT>, TSR_MAP_CODING_COUNT> cells{};
+    std::array<std::array<std::uint16_t, TSR_MAP_TRAINED_CELL_COUNT>, TSR_MAP_CODING_COUNT> cells{};
 };
 
 class MapPriorTrainer
 {
   public:
-    /* All questions of one map, [height][width], values that info admits. Against the reference, of the same shape, if
-     * there is one. */
+    /* All questions of one map, [height][width], values that info admits: as one stream and in packets, or against the
+     * reference, of the same shape, if there is one. */
     void add(const tsr_map_info &info, std::span<const std::uint16_t> map, std::span<const std::uint16_t> reference);
 
     std::size_t question_count() const { return questions_.size(); }
@@ -41,6 +41,8 @@ class MapPriorTrainer
     MapPrior train() const;
 
   private:
+    void add_packets(const tsr_map_info &info, std::span<const std::uint16_t> map);
+
     std::vector<tsr_map_question> questions_;
 };
 
