@@ -133,7 +133,7 @@ class PictureDecoder:
         for k in range(last - 1, -1, -1):
             u, v = divmod(ZIGZAG[k], BLOCK)
             around = (levels[u][v + 1], levels[u][v + 2], levels[u + 1][v], levels[u + 1][v + 1], levels[u + 2][v])
-            total = sum(min(abs(level), 15) for level in around)
+            total = sum(abs(level) for level in around)
             if k < last - 1 and not coder.bit(self.N[PLACE[u][v]][min(total, 5)]):
                 continue
             magnitude = 1

@@ -10,15 +10,19 @@ from codec_decoder import RangeDecoder
 
 
 class Decisions:
-    """Decisions of a numpy generator: as likely as contexts say, but at random in a share `wild` of them."""
+    """Decisions of a numpy generator, as likely as contexts say; but in a share of them, drawn here, at random, and in
+    another against the odds, which makes streams longer than literal ones."""
 
-    def __init__(self, rng, wild):
+    def __init__(self, rng):
         self.rng = rng
-        self.wild = wild
+        self.wild, self.contrary = ((0, 0), (0.01, 0), (0.1, 0), (1, 0), (0, 0.5), (0, 0.9))[int(rng.integers(0, 6))]
 
     def decide(self, p):
-        if self.rng.random() < self.wild:
-            return int(self.rng.random() < 0.5)
+        kind = self.rng.random()
+        if kind < self.contrary:
+            return int(p < 32768)
+        if kind < self.contrary + self.wild:
+            return int(self.rng.integers(0, 2))
         return int(65536 * self.rng.random() < p)
 
     def direct(self, b):

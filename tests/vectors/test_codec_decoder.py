@@ -134,9 +134,9 @@ def check_rewritten(decoder, data, rows):
 
 
 def check_chosen(rng, kind, start, dtype, make_info, make_decoder, against=None):
-    """Decisions of which a share pays no regard to the contexts: whether they are refused."""
+    """Decisions by chance: whether they are refused."""
     decoder = make_decoder(start)
-    decoder.coder = Encoder(Decisions(rng, float(rng.choice((0, 0.01, 0.1, 1)))))
+    decoder.coder = Encoder(Decisions(rng))
     try:
         rows = decoder.decode()
     except reference.FormatError as error:
@@ -178,10 +178,11 @@ def check_map(rng, kind, reference_kind, info, counts):
             assert check_bytes("map", data, np.uint16, MapInfo(), other,
                                lambda bytes_, rows_=other_rows: reference.decode_map(bytes_, rows_, name ^ 1)), where
     counts["map"] += 1
-    if info.width * info.height < SLOW_PIXELS and rng.random() < 0.5:
+    more = int(rng.integers(4)) if info.width * info.height < SLOW_PIXELS else None
+    if more == 0:
         check_rewritten(reference.MapDecoder(data, rows_against, name), data, rows)
         counts["rewritten"] += 1
-    elif info.width * info.height < SLOW_PIXELS:
+    elif more == 1:
         counts["refused"] += check_chosen(rng, "map", data[:9 if against is None else 11], np.uint16, MapInfo,
                                           lambda bytes_: reference.MapDecoder(bytes_, rows_against, name), against)
         counts["chosen"] += 1
@@ -256,6 +257,8 @@ def main():
             maps = [(size, variant) for size in sizes[:-1] for variant in variants]
             maps += [(size, variants[int(rng.integers(len(variants)))])
                      for size in 4 * sizes[-1:] + ([(160, 120)] if step_log2 in (0, 2) else [])]
+            if kind == "noise":  # literal, also in rows that end within 16 pixels
+                maps += [((75, 30), variants[int(rng.integers(len(variants)))]) for _ in range(2)]
             for (width, height), (near, reference_kind) in maps:
                 disparities = int(rng.choice([1, 2, 16, 31, 48, 64, 128]))
                 info = MapInfo(width, height, disparities, step_log2, near, int(rng.integers(-32768, 32768)))

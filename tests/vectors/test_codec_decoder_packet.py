@@ -121,14 +121,14 @@ def check_map(rng, disparity_map, info, counts):
 
 
 def check_random(rng, info):
-    """Decisions of which a share pays no regard to the contexts, and plain bytes."""
+    """Decisions by chance, and plain bytes."""
     groups = -(-info.width * info.height // 8)
     first = int(rng.integers(0, groups))
     count = int(rng.integers(1, min(COUNT_MAX // 8, groups - first) + 1))
     map_id = int(rng.integers(0, 8))
     start = (1 << 30 | map_id << 27 | int(rng.random() < 0.1) << 26 | (count - 1) << 17 | first).to_bytes(4, "little")
     decoder = PacketDecoder(info, map_id, start)
-    decoder.coder = Encoder(Decisions(rng, float(rng.choice((0, 0.01, 0.1)))), SHIFT)
+    decoder.coder = Encoder(Decisions(rng), SHIFT)
     try:
         decoded = len(decoder.decode())
     except FormatError as error:

@@ -71,10 +71,10 @@ def header(rng, width, height):
 
 
 def check_random(rng, width, height):
-    """Decisions of which a share pays no regard to the contexts, and plain bytes."""
+    """Decisions by chance, and plain bytes."""
     start = header(rng, width, height)
     decoder = PictureDecoder(start)
-    decoder.coder = Encoder(Decisions(rng, float(rng.choice((0, 0.05, 0.3, 1)))))
+    decoder.coder = Encoder(Decisions(rng))
     rows = decoder.decode()
     data = start + decoder.coder.finish()
     assert check(data, "decisions")[1] == rows
