@@ -5,7 +5,7 @@ SPDX-License-Identifier: Apache-2.0
 import ctypes
 
 import numpy as np
-from vision_library import AGAIN, ANY, LIB, OK, SIZE, U8, U16, Gray, pointer, view
+from vision_library import AGAIN, ANY, LIB, OK, SIZE, U8, U16, U32, Gray, pointer, view
 
 STATE_LEN = 4096  # more than a coder of views
 TILE = 8
@@ -17,6 +17,12 @@ class ViewInfo(ctypes.Structure):
 
 class ViewHeld(ctypes.Structure):
     _fields_ = [("packed", ANY), ("packed_cap", SIZE), ("info", ViewInfo), ("check", U16), ("full", ctypes.c_bool)]
+
+
+class ViewModel(ctypes.Structure):
+    """How a coder's state begins, for what no bytes bring about."""
+    _fields_ = [("info", ViewInfo), ("held", ANY), ("scratch", ANY), ("level_of", ANY), ("value_of", ANY), ("row", U16),
+                ("check", U16), ("level_max", U8), ("allowed_bits", U32)]
 
 
 LIB.tsr_prefilter_start.argtypes = [ANY, Gray, U8, ANY, SIZE]
@@ -87,16 +93,21 @@ def encode(filtered, cap=7, coarse=True, held=None, tiles=None):
     return out[:length.value].tobytes()
 
 
-def decode(data, held=None):
-    """The view of these bytes; a status instead if it is refused."""
+def decode(data, held=None, after_row=None):
+    """The view of these bytes; a status instead if it is refused. after_row(y, ViewModel) may change the decoder."""
     state, scratch, info = np.zeros(STATE_LEN, np.uint8), np.zeros(8192, np.uint8), ViewInfo()
     status = LIB.tsr_view_decode_start(pointer(state), data, len(data), held.at if held else None, pointer(scratch),
                                        scratch.size, ctypes.byref(info))
     if status != OK:
         return status
     filtered = np.zeros((info.height, info.width), np.uint8)
-    status = LIB.tsr_view_decode_rows(pointer(state), pointer(filtered), info.width, info.height)
-    assert status in (OK, AGAIN), status
+    if after_row is None:
+        assert LIB.tsr_view_decode_rows(pointer(state), pointer(filtered), info.width, info.height) == OK
+        return filtered
+    for y in range(info.height):
+        status = LIB.tsr_view_decode_rows(pointer(state), pointer(filtered[y]), info.width, 1)
+        assert status == (AGAIN if y + 1 < info.height else OK), status
+        after_row(y, ViewModel.from_buffer(state))
     return filtered
 
 
