@@ -33,6 +33,8 @@ class NoReferenceError(Exception):
 class RangeDecoder:
     """Chapter 1."""
 
+    RATE = 6  # of 1.6
+
     def __init__(self, data):
         self.data = data
         self.next = 0
@@ -75,12 +77,12 @@ class RangeDecoder:
         if self.offset < bound:
             bit = 1
             self.range = bound
-            cells[i] = p + ((65536 - p) >> 6)
+            cells[i] = p + ((65536 - p) >> self.RATE)
         else:
             bit = 0
             self.offset -= bound
             self.range -= bound
-            cells[i] = p - (p >> 6)
+            cells[i] = p - (p >> self.RATE)
         self._renormalise()
         return bit
 
