@@ -248,9 +248,7 @@ def bad_packets(folder):
     refuse_bytes("noise", good[:17] + RNG.bytes(5000), ["packets", "none"])
     newer = packets[0][:3] + bytes([packets[0][3] ^ 0xC0]) + packets[0][4:]
     refuse_bytes("another packet version", with_fields(body=packet_decoder.record(newer)), ["packet version", "2"])
-    with (folder / "bad.tdm").open("wb") as file:
-        file.write(good)
-        file.truncate(2**21 + 1)
+    (folder / "bad.tdm").write_bytes(good.ljust(2**21 + 1, b"\0"))
     refuse("packets without end", "decode", folder / "bad.tdm", "-o", out, mentions=["bad.tdm", str(2**21)], left=[out])
     (folder / "bad.tdm").unlink()
     refuse("a reference to packets", "decode", folder / "packets.tdm", "-o", out, "--against", folder / "old.pfm",
@@ -409,6 +407,23 @@ def damaged(folder):
     print(f"40 damaged maps: {refused} refused")
 
 
+def damaged_packets(folder):
+    """Bytes changed, lost and put in anywhere behind the header: the same map as by the specification."""
+    coded, back = (folder / "packets.tdm").read_bytes(), folder / "damaged.pfm"
+    for turn in range(30):
+        data = bytearray(coded)
+        for at in RNG.integers(17, len(data) - 60, 4):
+            data[at:at + RNG.integers(0, 40)] = RNG.bytes(RNG.integers(0, 40))
+        (folder / "damaged.tdm").write_bytes(data)
+        told, file = run_json("decode", folder / "damaged.tdm", "-o", back), packet_decoder.File(bytes(data))
+        wanted, held = np.full((60, 80), np.inf), np.zeros((60, 80), bool)
+        for here, values in (held_by(packet, file) for packet in file.packets):
+            wanted[here], held = values[here], held | here
+        check(told["packets"] == {"count": file.count, "found": len(file.packets), "missing_pixels": (~held).sum(),
+                                  "damaged_bytes": file.damaged}, f"{turn}: {told}")
+        check(np.array_equal(map_quality.read_pfm(back), wanted), f"{turn}: another map, says the specification")
+
+
 def full_disk(folder):
     noise = folder / "noise.pfm"
     map_quality.write_pfm(noise, RNG.integers(0, 2000, (60, 80)) / 16)
@@ -431,4 +446,5 @@ with tempfile.TemporaryDirectory() as name:
     bad_packets(folder)
     bad_decode(folder)
     damaged(folder)
+    damaged_packets(folder)
     full_disk(folder)
