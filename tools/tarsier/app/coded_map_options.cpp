@@ -84,7 +84,7 @@ std::string manner_of(const CodedMapFigures &figures)
         const PacketFigures &packets = *figures.packets;
         const std::string count = std::to_string(packets.count);
         if (packets.missing_pixels == 0 && packets.damaged_len == 0) {
-            return "in " + count + " packets";
+            return "in " + count + (packets.count == 1 ? " packet" : " packets");
         }
         return "in packets, " + std::to_string(packets.found) + " of " + count + " intact, " +
                std::to_string(packets.missing_pixels) + " px missing, " + std::to_string(packets.damaged_len) +

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -109,6 +110,18 @@ MapPackets read_header(std::span<const std::uint8_t> bytes, const std::filesyste
     return map;
 }
 
+/* A packet of another version may be damage that the checksum let pass; where nothing decodes it is the reason. */
+[[noreturn]] void refuse_all(const MapPackets &map, std::optional<unsigned> other_version,
+                             const std::filesystem::path &file)
+{
+    if (other_version) {
+        throw InputError(file.string(), "packet version",
+                         std::to_string(*other_version) + ", known is " +
+                             std::to_string(TSR_MAP_PACKET_FORMAT_VERSION) + "; of another release");
+    }
+    throw InputError(file.string(), "packets", "none of " + std::to_string(map.count) + " is intact");
+}
+
 void expect_ok(bool ok, tsr_status status)
 {
     if (!ok) {
@@ -201,22 +214,19 @@ MapOfPackets decode_map_packets(const MapPackets &map, const std::filesystem::pa
     const auto model = std::make_unique<tsr_map_model>();
     std::array<std::uint16_t, TSR_MAP_PACKET_SCRATCH_COUNT> scratch{};
     std::set<std::uint32_t> firsts;
+    std::optional<unsigned> other_version;
     for (const std::vector<std::uint8_t> &bytes : map.packets) {
         tsr_map_packet packet{};
         status = tsr_map_packet_decode(model.get(), &map.info, map.map_id, bytes.data(), bytes.size(), scratch.data(),
                                        scratch.size(), &packet, result.values_q4.data(), map.info.width);
-        if (status == TSR_ERR_VERSION) {
-            throw InputError(file.string(), "packet version",
-                             std::to_string(bytes[3] >> 6U) + ", known is " +
-                                 std::to_string(TSR_MAP_PACKET_FORMAT_VERSION) + "; of another release");
-        }
         if (status == TSR_OK) {
             firsts.insert(packet.first);
         }
+        other_version = status == TSR_ERR_VERSION ? bytes[3] >> 6U : other_version;
     }
     result.found = firsts.size();
     if (result.found == 0) {
-        throw InputError(file.string(), "packets", "none of " + std::to_string(map.count) + " is intact");
+        refuse_all(map, other_version, file);
     }
     result.missing_pixels = tsr_map_packets_missing(&map.info, result.values_q4.data(), map.info.width);
     std::ranges::replace(result.values_q4, std::uint16_t{TSR_MAP_PIXEL_MISSING}, std::uint16_t{TSR_DISPARITY_INVALID});

@@ -54,7 +54,7 @@ bool is_map_packet_file(std::span<const std::uint8_t> bytes);
 /* Refuses a header that is short, damaged or out of range, naming the field; bytes behind it are never refused. */
 MapPackets read_map_packets(std::span<const std::uint8_t> bytes, const std::filesystem::path &file);
 
-/* Refused if no packet decodes, or one is of another version. */
+/* Refused if no packet decodes. */
 MapOfPackets decode_map_packets(const MapPackets &map, const std::filesystem::path &file);
 
 } // namespace tsr
