@@ -8,7 +8,8 @@
 
 #include <string.h>
 
-/* P(1) of a level, UQ0.16: 1 / (1 + exp((32 - level) / 4)), at most 1 - 64 / 65536, where adaptation would stop. */
+/* P(1) of a level, UQ0.16: 1 / (1 + exp((32 - level) / 4)), within 64 .. 65472, where adaptation
+ * would stop. */
 static const uint16_t level_starts[TSR_MAP_LEVEL_COUNT] = {
     64,    64,    64,    64,    64,    77,    98,    126,   162,   208,   267,   342,   439,   562,   720,   922,
     1179,  1506,  1921,  2446,  3108,  3938,  4971,  6249,  7812,  9702,  11955, 14595, 17625, 21025, 24743, 28693,

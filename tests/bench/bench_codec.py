@@ -1,8 +1,9 @@
-"""The map codec: bytes beside JPEG XL, instructions on a Cortex-M4, memory.
+"""The codecs: bytes beside those of others, what views cost of a map, instructions on a Cortex-M4, memory.
 
 Maps are this project's matcher's (mode sad, 3x3 median) of the pairs in TSR_DATA (by default ../shared/data beside the source
-tree), at 160x120 and 320x240; each is coded with a prior trained without the pictures of its own set. Needs python3-opencv and
-cjxl (libjxl-tools), which tools/setup does not install.
+tree), at 160x120 and 320x240; each is coded with a prior trained without the pictures of its own set. Views and pictures are
+coded with the shipped priors. Needs python3-opencv and cjxl and djxl (libjxl-tools), which tools/setup does not install; with pillow-jpls
+(pip) JPEG-LS is measured too. --table prints the codecs beside each other, for docs/performance.md.
 
 SPDX-License-Identifier: Apache-2.0
 """
@@ -10,18 +11,20 @@ import os
 import pathlib
 import shutil
 import statistics
-import subprocess
 import sys
 import tempfile
 
 import work_table  # finds tests/target
 import board
+from progress import tell
 
 RELEASE = board.SOURCE / "build/release"
 os.environ.setdefault("TSR_BUILD", str(RELEASE))
 sys.path.insert(0, str(board.SOURCE / "tests/support"))
 
 STEPS = {"whole pixels": 4, "1/2 px": 3, "1/4 px": 2, "1/8 px": 1, "1/16 px": 0}
+PEERS_STEPS = ("whole pixels", "1/2 px", "1/4 px")
+PAIR_QUALITY = 50  # of the two JPEGs that a map stands for
 TRAINED_STEPS = ("1", "0.5", "0.25")
 PACKET_LEN = 90
 NOISE_SIGMA = 1.0
@@ -109,19 +112,14 @@ def write_map(map_quality, path, disparity_map, np):
     map_quality.write_pfm(path, np.where(disparity_map == 65535, np.inf, disparity_map / 16.0))
 
 
-def jpeg_xl_len(np, disparity_map, step_log2, work):
-    """Labels from 1, 0 for no match, as a gray picture of 8 bits or, if they do not fit, 16."""
-    labels = np.where(disparity_map == 65535, 0, 1 + (disparity_map >> step_log2).astype(int))
-    largest = 255 if labels.max() < 256 else 65535
-    picture, coded = work / "labels.pgm", work / "labels.jxl"
-    picture.write_bytes(b"P5\n%d %d\n%d\n" % (labels.shape[1], labels.shape[0], largest) +
-                        labels.astype(">u2" if largest > 255 else "u1").tobytes())
-    subprocess.run(["cjxl", picture, coded, "-d", "0", "-e", "9", "--quiet"], check=True, stderr=subprocess.DEVNULL)
-    return coded.stat().st_size
+def labels_of(np, disparity_map, step_log2):
+    """Labels from 1, 0 for no match, as other codecs get a map."""
+    return np.where(disparity_map == 65535, 0, 1 + (disparity_map >> step_log2).astype(int))
 
 
-def lens_of(maps, key, codec, step_log2, work):
+def lens_of(maps, key, codec, step_log2, all_peers):
     """Bytes of one map in every way, each decoded and compared."""
+    import codec_peers
     np, disparities = maps.np, maps.disparities[key]
     quantised = maps.quantised(maps.alone[key], key, step_log2)
     stream = codec.encode(quantised, disparities, step_log2)
@@ -133,7 +131,9 @@ def lens_of(maps, key, codec, step_log2, work):
     assert (codec.decode_packets(packets[::-1], quantised.shape, disparities, step_log2) == quantised).all(), key
     assert ((seen != 65535) == valid).all() and (abs(seen.astype(int) - quantised)[valid] <= 1 << step_log2).all(), key
     result = {"one stream": stream.size, "packets of 90 B": sum(packet.size for packet in packets),
-              "near-lossless": near.size, "JPEG XL": jpeg_xl_len(np, quantised, step_log2, work)}
+              "near-lossless": near.size}
+    labels = labels_of(np, quantised, step_log2)
+    result |= codec_peers.lossless(labels) if all_peers else {"JPEG XL e9": codec_peers.lossless_xl(labels)}
     alone = against = 0
     for earlier, later in (map(lambda one: maps.quantised(one, key, step_log2), pair) for pair in maps.sequences[key]):
         data = codec.encode(later, disparities, step_log2, reference=earlier)
@@ -143,14 +143,35 @@ def lens_of(maps, key, codec, step_log2, work):
     return {**result, "later map alone": alone, "later map against the earlier": against}
 
 
-def map_bytes(maps, codecs, work):
+def map_bytes(maps, codecs):
     """{(step, width): {way: mean bytes}}"""
     found = {}
     for step, step_log2 in STEPS.items():
         for width in sorted({key[2] for key in maps.alone}):
-            each = [lens_of(maps, key, codecs[key[0]], step_log2, work) for key in maps.alone if key[2] == width]
+            tell(f"maps, {step}, {width} px wide")
+            each = [lens_of(maps, key, codecs[key[0]], step_log2, step in PEERS_STEPS) for key in maps.alone
+                    if key[2] == width]
             found[step, width] = {way: statistics.mean(one[way] for one in each) for way in each[0]}
     return found
+
+
+def map_bits(found, pairs):
+    """{step: {way or codec: {width: bits per pixel}}}, two gray JPEGs in the place of the map among them."""
+    rows = {step: {} for step in PEERS_STEPS}
+    for (step, width), lens in found.items():
+        for way, size in {**lens, f"two gray JPEGs, quality {PAIR_QUALITY}": pairs[width]}.items():
+            if step in rows and not way.startswith("later"):
+                rows[step].setdefault(way, {})[width] = 8 * size / (width * width * 3 / 4)
+    return rows
+
+
+def pair_bytes(folders):
+    """{width: mean bytes of both views as JPEGs}"""
+    import codec_peers
+    import stereo_pairs
+    return {width: statistics.mean(sum(codec_peers.jpeg(view, PAIR_QUALITY)[0]
+                                       for view in stereo_pairs.load(folder, width, height)[:2]) for folder in folders)
+            for width, height, _ in stereo_pairs.CASES}
 
 
 def map_targets(found):
@@ -159,7 +180,7 @@ def map_targets(found):
         total = {way: sum(lens[way] for lens in rows.values()) for way in next(iter(rows.values()))}
         for where, lens in [*((f"{width} px wide", lens) for width, lens in rows.items()), ("both sizes", total)]:
             for way in ("one stream", "packets of 90 B", "near-lossless"):
-                yield target(f"maps, {step}, {way}, {where}", lens[way] / lens["JPEG XL"], "of JPEG XL e9's bytes",
+                yield target(f"maps, {step}, {way}, {where}", lens[way] / lens["JPEG XL e9"], "of JPEG XL e9's bytes",
                              GOALS.get((way, step)) if lens is total else None,
                              "mean bytes over mean bytes, headers counted")
             yield target(f"maps, {step}, against the earlier map, {where}",
@@ -168,7 +189,7 @@ def map_targets(found):
                          "an object in 10 .. 30 % of the view, noise sigma 1 in every capture")
         for width, lens in rows.items():
             yield target(f"maps, {step}, size, {width} px wide", 8 * lens["one stream"] / (width * width * 3 / 4),
-                         "bits per pixel", how=f"JPEG XL {8 * lens['JPEG XL'] / (width * width * 3 / 4):.3f}")
+                         "bits per pixel", how=f"JPEG XL {8 * lens['JPEG XL e9'] / (width * width * 3 / 4):.3f}")
 
 
 def instructions():
@@ -179,6 +200,10 @@ def instructions():
         yield target(f"Cortex-M4, maps, {name}", statistics.mean(units[work] for _, units in cases),
                      "instructions per pixel", INSTRUCTIONS_GOAL if "whole" in work else None,
                      f"mean of {len(cases)} pairs at 160x120, QEMU plugin")
+    for work in ("view_encode", "view_decode", "view_encode_next", "view_decode_next", "picture_encode", "picture_decode"):
+        codec, *what = work.split("_")
+        yield target(f"Cortex-M4, {codec}s, {', '.join(what)}", statistics.mean(units[work] for _, units in cases),
+                     "instructions per pixel", how="views coarse, pictures of the node's step")
 
 
 def memory():
@@ -195,17 +220,36 @@ def memory():
                  "alone and near-lossless, and against a reference")
 
 
+def table(result):
+    import codec_table
+    return codec_table.table(result)
+
+
 def bench():
     data = pathlib.Path(os.environ.get("TSR_DATA", board.SOURCE.parent / "shared/data"))
     if not any(data.glob("mb*")):
         raise board.BoardError(f"{data}: no pairs (mb*/)")
-    if shutil.which("cjxl") is None:
-        raise board.BoardError("cjxl: not installed (package libjxl-tools)")
+    if shutil.which("cjxl") is None or shutil.which("djxl") is None:
+        raise board.BoardError("cjxl, djxl: not installed (package libjxl-tools)")
+    tell("build")
     build()
+    import codec_pictures
+    import codec_views
+    import stereo_pairs
+    folders = stereo_pairs.folders(data)
+    views, pictures = codec_views.measure(folders), codec_pictures.measure(folders)
+    tell("match")
     maps = Maps(data)
     with tempfile.TemporaryDirectory() as name:
-        work = pathlib.Path(name)
-        codecs = {family: train(maps, family, work) for family in maps.families()}
-        found = map_bytes(maps, codecs, work)
-    return {"targets": [*map_targets(found), *instructions(), *memory()],
-            "details": {"mean_bytes": {f"{step}, {width}": lens for (step, width), lens in found.items()}}}
+        codecs = {}
+        for family in maps.families():
+            tell(f"train without {family}")
+            codecs[family] = train(maps, family, pathlib.Path(name))
+        found = map_bytes(maps, codecs)
+    tell("instructions")
+    return {"targets": [*map_targets(found), *codec_views.targets(views, target), *codec_pictures.targets(pictures, target),
+                        *instructions(), *memory()],
+            "details": {"mean_bytes": {f"{step}, {width}": lens for (step, width), lens in found.items()}, "views": views,
+                        "bits_per_pixel": {"maps": map_bits(found, pair_bytes(folders)),
+                                           "views": codec_views.bits_per_pixel(views),
+                                           "pictures": codec_pictures.bits_per_pixel(pictures)}}}

@@ -24,7 +24,7 @@ RULES = {
     "hal/mps2": {"hal", "base"},
     "tools/host": {"host", "base", "vision", "codec", "wire"},
     "tools/tarsier": {"stage", "stereo", "coding", "host", "base", "codec", "wire", "vision"},
-    "tools/train": {"codec", "base"},
+    "tools/train": {"codec", "base", "vision"},
     "emulator": {"emulator", "node", "hal", "host", "base", "wire"},
     "sink": {"sink", "host", "base", "codec", "wire"},
 }

@@ -6,6 +6,7 @@ firmware/codec/map_prior.c, which the document names as a part of itself.
 
 SPDX-License-Identifier: Apache-2.0
 """
+import math
 import os
 import pathlib
 import re
@@ -146,14 +147,14 @@ def shaped(numbers, *shape):
 
 
 def read_map_prior():
-    """T by kind and table, and the contexts' starts: alone, near, against a reference."""
+    """T by kind and table, and how the trained contexts start: alone, near, in packets, against a reference."""
     text = (SOURCE / "firmware/codec/map_prior.c").read_text("ascii")
     parts = re.findall(r"\.weights = (.*?)\.cells = (.*?)\n};", text, re.DOTALL)
     alone, against = ([[int(number) for number in re.findall(r"-?\d+", part)] for part in pair] for pair in parts)
-    if [len(part) for part in alone + against] != [6 * 5 * 64, 2 * 466, 6 * 3 * 64, 466]:
+    if [len(part) for part in alone + against] != [6 * 5 * 64, 3 * 274, 6 * 3 * 64, 274]:
         raise ValueError("map_prior.c does not hold what the document says")
     tables = [first + more for first, more in zip(shaped(iter(alone[0]), 6, 5, 64), shaped(iter(against[0]), 6, 3, 64))]
-    return tables, shaped(iter(alone[1] + against[1]), 3, 466)
+    return tables, shaped(iter(alone[1] + against[1]), 4, 274)
 
 
 class MapDecoder:
@@ -164,7 +165,7 @@ class MapDecoder:
     def __init__(self, data, reference=None, reference_id=None):
         if len(data) < 9:
             raise FormatError
-        if data[0] & 15 != 2 or data[0] >> 4 > 1 or data[1] >> 4 != 1:
+        if data[0] & 15 != 3 or data[0] >> 4 > 1 or data[1] >> 4 != 2:
             raise VersionError
         self.mode = data[0] >> 4
         self.step_log2 = data[1] & 7
@@ -181,21 +182,23 @@ class MapDecoder:
         if self.mode and (reference is None or reference_id != self.reference_id):
             raise NoReferenceError
         self.coder = RangeDecoder(data[header_len:])
-        self._begin()
+        self._begin(3 if self.mode else self.near)
         self.reference = {(x, y): self.reference_label(reference[y][x]) for y in range(self.height)
                           for x in range(self.width)} if self.mode else {}
 
-    def _begin(self):
-        """What the fields of the header decide."""
+    def _begin(self, coding):
+        """What the fields of the header decide; contexts as 2.8 says."""
         self.labels = (16 * self.disparities) >> self.step_log2
         self.label_bits = self.labels.bit_length()
         self.none = self.label_of(INVALID)
         self.last = self.labels // 4
         self.map = {}
-        cells = iter(self.CELLS[2 if self.mode else self.near])
-        self.flat, self.candidate, self.invalid = shaped(cells, 48), shaped(cells, 6, 32), shaped(cells, 16, 6)
+        cells = iter(self.CELLS[coding])
+        self.flat, self.invalid = shaped(cells, 48), shaped(cells, 16, 6)
         self.predicted, self.sign = shaped(cells, 6, 6), shaped(cells, 27)
         self.nearer, self.farther, self.half = shaped(cells, 4, 12), shaped(cells, 9), shaped(cells, 10)
+        self.candidate = [[min(max(round(65536 / (1 + math.exp((32 - level) / 4))), 64), 65472) for level in range(64)]
+                          for _ in range(6)]
 
     def reference_label(self, value):
         label = self.label_of(value)
@@ -266,7 +269,7 @@ class MapDecoder:
                      + T[4][pair(N if C == W else W, NNW)])
             if self.mode:
                 total += T[5][pair(R, RE)] + T[6][pair(RS, RSE)] + T[7][changed + 16 * (R == C) + 32 * (RE == R)]
-            if bit(self.candidate[kind], min(max((total + 2) // 4 + 16, 0), 31)):
+            if bit(self.candidate[kind], min(max((total + 1) // 2 + 32, 0), 63)):
                 return C
         # 2.7
         if none not in asked:

@@ -4,7 +4,7 @@ SPDX-License-Identifier: Apache-2.0
 """
 from codec_decoder import INVALID, FormatError, MapDecoder, NoReferenceError, RangeDecoder, VersionError
 
-STRIP_WIDTH = 32
+STRIP_WIDTH = 40
 
 
 class Strip:
@@ -27,7 +27,7 @@ class PacketDecoder(MapDecoder):
         if len(data) < 4:
             raise FormatError
         header = int.from_bytes(data[:4], "little")
-        if header >> 30 != 1:
+        if header >> 30 != 2:
             raise VersionError
         self.width, self.height, self.disparities = info.width, info.height, info.disparities
         self.step_log2, self.near = info.step_log2, info.near
@@ -41,7 +41,7 @@ class PacketDecoder(MapDecoder):
             raise NoReferenceError
         self.count = min(self.count, total - self.first)
         self.coder = RangeDecoder(data[4:], shift=5)
-        self._begin()
+        self._begin(1 if self.near else 2)
 
     def places(self):
         """(x, y, column within the strip, width of the strip) of the packet's pixels."""
@@ -55,8 +55,9 @@ class PacketDecoder(MapDecoder):
         """[(x, y, disparity)]; a FormatError has those before in `rows`."""
         found = []
         self.map = Strip(self.none)
-        run = 0
+        run, top = 0, None
         for x, y, column, width in self.places():
+            top = (x - column, y) if y == 0 or top is None else top
             said = self.map.said
             if found and column == 0:
                 if y == 0:
@@ -74,6 +75,8 @@ class PacketDecoder(MapDecoder):
             said[column, y] = label
             if not found:
                 self.map.rest = label
+            if top == (x - column, y):
+                said.update({(c, row): label for c in range(column, width + 2) for row in (y - 1, y - 2)})
             if column == width - 1:
                 said[width, y] = said[width + 1, y] = label
             self.last = label if label != self.none else self.last

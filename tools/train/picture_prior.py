@@ -12,43 +12,23 @@ Needs a C compiler, NumPy and OpenCV.
 SPDX-License-Identifier: Apache-2.0
 """
 import argparse
-import ctypes
 import pathlib
 import re
-import subprocess
-import sys
 import tempfile
 
 import cv2
 import numpy as np
+import prior_training
+from prior_training import CODEC, TRAIN
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-CODEC = ROOT / "firmware/codec"
 SIZES = ((320, 240), (160, 120))
 SSIM_TARGETS = (0.86, 0.90, 0.94)
 STEPS = range(12, 60, 4)
-BITS_MAX = 1 << 22
 # Pattern, every how many of its files. Views of one place are alike, so few of each are taken.
 SOURCES = (("mb*/left.png", 1), ("mb2006*/right.png", 1), ("mb2014*/right.png", 1), ("boofcv_bumblebee2/scenes/*", 3),
            ("boofcv_bumblebee2/rectified/*", 2), ("boofcv_bumblebee2/chess/*", 11), ("stereopi_chess_320x240/**/*", 14),
            ("strecha_*/*.jpg", 3), ("strecha_*/*.png", 3), ("mview_temple_sparse_ring/*.png", 8),
            ("rgbd_office_slambook2/color/*", 1))
-
-
-def build(folder):
-    """The codec with its questions recorded, as a library."""
-    includes = [f"-I{ROOT}/firmware/{layer}/include" for layer in ("base", "codec")]
-    compile_one = ["cc", "-O2", "-fPIC", "-std=c11", *includes, "-c"]
-    sources = [*CODEC.glob("picture*.c"), CODEC / "range_port.c", *(ROOT / "firmware/base").glob("*.c")]
-    for source in sources:
-        subprocess.run([*compile_one, "-Dtsr_range_encode_bit=prior_trace_bit", source], cwd=folder, check=True)
-    for source in (CODEC / "range.c", ROOT / "tools/train/prior_trace.c"):
-        subprocess.run([*compile_one, source], cwd=folder, check=True)
-    subprocess.run(["cc", "-shared", "-o", "trace.so", *folder.glob("*.o"), "-lm"], cwd=folder, check=True)
-    library = ctypes.CDLL(str(folder / "trace.so"))
-    library.prior_trace_picture.restype = ctypes.c_size_t
-    library.prior_fit.restype = ctypes.c_uint16
-    return library
 
 
 def reduce(image, size):
@@ -81,47 +61,16 @@ def ssim(a, b):
 
 
 def code(library, image, step):
-    """The decoded picture, and what was asked: 2 * context + bit, in order."""
-    decoded, asked, count = image.copy(), np.zeros(BITS_MAX, np.uint32), ctypes.c_size_t()
-    height, width = image.shape
-    length = library.prior_trace_picture(decoded.ctypes.data_as(ctypes.c_void_p), width, height, step, 0,
-                                         asked.ctypes.data_as(ctypes.c_void_p), ctypes.c_size_t(BITS_MAX),
-                                         ctypes.byref(count))
-    if not length:
-        sys.exit("the codec refused a picture")
-    return decoded, asked[:count.value].copy()
+    """The decoded picture, and what was asked."""
+    decoded = image.copy()
+    asked = prior_training.trace(library.prior_trace_picture, decoded, step, 0)
+    return decoded, asked
 
 
 def streams(library, image):
     """What is asked at the steps nearest to the targets."""
     found = [(ssim(image, decoded), asked) for decoded, asked in (code(library, image, step) for step in STEPS)]
     return [min(found, key=lambda one: abs(one[0] - target))[1] for target in SSIM_TARGETS]
-
-
-def fit(library, asked_of, context_count):
-    """The prior of each context, and what it costs in bits."""
-    by_context = []
-    for asked in asked_of:
-        order = np.argsort(asked >> 1, kind="stable")
-        by_context.append(((asked[order] & 1).astype(np.uint8),
-                           np.searchsorted(asked[order] >> 1, np.arange(context_count + 1))))
-    prior, total, cost = [], 0.0, ctypes.c_double()
-    for context in range(context_count):
-        parts = [bits[at[context]:at[context + 1]] for bits, at in by_context]
-        parts = [part for part in parts if len(part)]
-        bits = np.concatenate([*parts, np.zeros(1, np.uint8)])
-        begins = np.cumsum([0, *map(len, parts)]).astype(np.uintp)
-        prior.append(library.prior_fit(bits.ctypes.data_as(ctypes.c_void_p), begins.ctypes.data_as(ctypes.c_void_p),
-                                       ctypes.c_size_t(len(parts)), ctypes.byref(cost)) if parts else 0x8000)
-        total += cost.value if parts else 0
-    return prior, total
-
-
-def table(prior):
-    rows = [", ".join(f"0x{value:04x}" for value in prior[i:i + 14]) for i in range(0, len(prior), 14)]
-    return ("/*\n * What the contexts of pictures start from; tools/train/picture_prior.py writes this file.\n *\n"
-            " * SPDX-License-Identifier: Apache-2.0\n */\n#include \"picture_block.h\"\n\n"
-            "const uint16_t tsr_picture_prior[TSR_PICTURE_CONTEXT_COUNT] = {\n    " + ",\n    ".join(rows) + "};\n")
 
 
 def main():
@@ -133,10 +82,12 @@ def main():
     header = (CODEC / "include/tsr/codec/picture.h").read_text("utf-8")
     context_count = int(re.search(r"TSR_PICTURE_CONTEXT_COUNT (\d+)", header)[1])
     with tempfile.TemporaryDirectory() as folder:
-        library = build(pathlib.Path(folder))
+        library = prior_training.build(pathlib.Path(folder), CODEC.glob("picture*.c"), (), TRAIN / "picture_trace.c")
         asked_of = [asked for image in pictures(arguments.data, arguments.without) for asked in streams(library, image)]
-        prior, cost = fit(library, asked_of, context_count)
-    arguments.out.write_text(table(prior), "utf-8")
+        prior, cost = prior_training.fit(library, asked_of, context_count)
+    comment = " * What the contexts of pictures start from; tools/train/picture_prior.py writes this file.\n"
+    arguments.out.write_text(prior_training.table(prior, comment, "picture_block.h",
+                                                  "tsr_picture_prior[TSR_PICTURE_CONTEXT_COUNT]"), "utf-8")
     print(f"{len(asked_of)} streams, {sum(map(len, asked_of))} adaptive bits, coded in {cost:.0f}")
 
 

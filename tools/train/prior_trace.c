@@ -1,51 +1,40 @@
 /*
  * Record what the contexts of a codec are asked, and fit the prior that would
- * have coded it in the fewest bits. tools/train/picture_prior.py builds this with
- * the codec, whose tsr_range_encode_bit is renamed to prior_trace_bit.
+ * have coded it in the fewest bits.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
+#include "prior_trace.h"
+
 #include <math.h>
 #include <stdlib.h>
-
-#include "tsr/codec/picture.h"
 
 #define P_CANDIDATES 11
 #define COUNT_CANDIDATES 16
 
-static struct tsr_picture_encoder encoder;
-static struct tsr_picture_decoder decoder;
-static uint8_t scratch[TSR_PICTURE_SCRATCH_LEN(TSR_IMAGE_WIDTH_MAX)];
-static uint8_t coded[TSR_PICTURE_ENCODED_LEN_MAX(TSR_IMAGE_WIDTH_MAX, TSR_IMAGE_HEIGHT_MAX)];
+static const struct tsr_range_bit *traced;
 static uint32_t *asked; /* 2 * context + bit */
 static size_t asked_cap, asked_count;
+
+void prior_trace_start(const struct tsr_range_bit *contexts, uint32_t *trace, size_t trace_cap)
+{
+    traced = contexts;
+    asked = trace;
+    asked_cap = trace_cap;
+    asked_count = 0;
+}
+
+size_t prior_trace_count(void)
+{
+    return asked_count;
+}
 
 void prior_trace_bit(struct tsr_range_encoder *range, struct tsr_range_bit *context, unsigned bit)
 {
     if (asked_count < asked_cap) {
-        asked[asked_count++] = 2u * (uint32_t)(context - encoder.model.contexts) + bit;
+        asked[asked_count++] = 2u * (uint32_t)(context - traced) + bit;
     }
     tsr_range_encode_bit(range, context, bit);
-}
-
-/* Code a picture and decode it in place; what was asked goes to trace. Returns its length, 0 if the codec refuses. */
-size_t prior_trace_picture(uint8_t *pixels, unsigned width, unsigned height, unsigned step, unsigned prior,
-                           uint32_t *trace, size_t trace_cap, size_t *trace_count)
-{
-    struct tsr_picture_info info = {(uint16_t)width, (uint16_t)height, (uint8_t)step, (uint8_t)prior};
-    size_t len = 0;
-    asked = trace;
-    asked_cap = trace_cap;
-    asked_count = 0;
-    if (tsr_picture_encode_start(&encoder, &info, 0, coded, sizeof coded, scratch, sizeof scratch) != TSR_OK ||
-        tsr_picture_encode_rows(&encoder, pixels, width, (uint16_t)height) != TSR_OK ||
-        tsr_picture_encode_finish(&encoder, &len) != TSR_OK ||
-        tsr_picture_decode_start(&decoder, coded, len, scratch, sizeof scratch, &info) != TSR_OK ||
-        tsr_picture_decode_rows(&decoder, pixels, width, (uint16_t)height) != TSR_OK) {
-        return 0;
-    }
-    *trace_count = asked_count;
-    return len;
 }
 
 /* Bits that streams cost with this prior: bits[begins[s] .. begins[s + 1]) is stream s, which starts anew. */

@@ -6,6 +6,7 @@
 #include "coded_map_options.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <string>
@@ -35,23 +36,61 @@ std::string shape_of(unsigned width, unsigned height)
     return std::to_string(width) + "x" + std::to_string(height);
 }
 
-void print_json(const CodedMap &coded, double density, const std::filesystem::path &out)
+double bits_per_pixel(const CodedMapFigures &figures)
 {
-    const tsr_map_info &info = coded.info;
+    return 8.0 * static_cast<double>(figures.len) / (static_cast<double>(figures.info.width) * figures.info.height);
+}
+
+double step_px(const tsr_map_info &info)
+{
+    return std::ldexp(1.0, info.step_log2) / TSR_DISPARITY_ONE_Q4;
+}
+
+Json json_of(const std::optional<PacketFigures> &packets)
+{
+    if (!packets) {
+        return nullptr;
+    }
+    return {{"count", packets->count},
+            {"found", packets->found},
+            {"missing_pixels", packets->missing_pixels},
+            {"damaged_bytes", packets->damaged_len}};
+}
+
+void print_json(const CodedMapFigures &figures, double density, const std::filesystem::path &out)
+{
+    const tsr_map_info &info = figures.info;
     const Json json = {{"width", info.width},
                        {"height", info.height},
-                       {"bytes", coded.bytes.size()},
-                       {"bits_per_pixel", coded.bits_per_pixel()},
+                       {"bytes", figures.len},
+                       {"bits_per_pixel", bits_per_pixel(figures)},
                        {"density", density},
-                       {"step_px", coded.step_px()},
+                       {"step_px", step_px(info)},
                        {"near", info.near},
                        {"disparities", info.disparities},
-                       {"d0_px", coded.d0_px()},
+                       {"d0_px", static_cast<double>(info.d0_q4) / TSR_DISPARITY_ONE_Q4},
                        {"reference_id", info.has_reference ? Json(info.reference_id) : Json(nullptr)},
-                       {"format_version", coded.format_version()},
-                       {"prior", coded.prior()},
+                       {"format_version", figures.format_version},
+                       {"prior", figures.prior ? Json(*figures.prior) : Json(nullptr)},
+                       {"packets", json_of(figures.packets)},
                        {"out", out.string()}};
     std::cout << json.dump(1, ' ', false, Json::error_handler_t::replace) << "\n";
+}
+
+/* How it was coded; of packets also what is not there. */
+std::string manner_of(const CodedMapFigures &figures)
+{
+    if (figures.packets) {
+        const PacketFigures &packets = *figures.packets;
+        const std::string count = std::to_string(packets.count);
+        if (packets.missing_pixels == 0 && packets.damaged_len == 0) {
+            return "in " + count + (packets.count == 1 ? " packet" : " packets");
+        }
+        return "in packets, " + std::to_string(packets.found) + " of " + count + " intact, " +
+               std::to_string(packets.missing_pixels) + " px missing, " + std::to_string(packets.damaged_len) +
+               " bytes damaged";
+    }
+    return figures.info.has_reference ? "against map " + std::to_string(figures.info.reference_id) : "alone";
 }
 
 } // namespace
@@ -97,19 +136,28 @@ CLI::Validator is_map_step()
     return CLI::IsMember({1.0, 0.5, 0.25, 0.125, 0.0625});
 }
 
-void print_coded_map(const CodedMap &coded, std::span<const std::uint16_t> values_q4, const std::filesystem::path &out,
-                     bool json)
+CodedMapFigures figures_of(const CodedMap &coded)
+{
+    return {coded.info, coded.bytes.size(), coded.format_version(), coded.prior(), std::nullopt};
+}
+
+CodedMapFigures figures_of(const MapPackets &packets, const MapOfPackets &decoded)
+{
+    return {packets.info, packets.len(), TSR_MAP_PACKET_FORMAT_VERSION, std::nullopt,
+            PacketFigures{packets.count, decoded.found, decoded.missing_pixels, packets.damaged_len}};
+}
+
+void print_coded_map(const CodedMapFigures &figures, std::span<const std::uint16_t> values_q4,
+                     const std::filesystem::path &out, bool json)
 {
     const double density = density_of(values_q4);
     if (json) {
-        print_json(coded, density, out);
+        print_json(figures, density, out);
         return;
     }
-    const std::string reference =
-        coded.info.has_reference ? "against map " + std::to_string(coded.info.reference_id) : "alone";
     std::printf("%s: %ux%u %s, %zu bytes coded, %.3f bits per pixel, %.1f %% valid, step %g px, near %u\n", out.c_str(),
-                coded.info.width, coded.info.height, reference.c_str(), coded.bytes.size(), coded.bits_per_pixel(),
-                100 * density, coded.step_px(), coded.info.near);
+                figures.info.width, figures.info.height, manner_of(figures).c_str(), figures.len,
+                bits_per_pixel(figures), 100 * density, step_px(figures.info), figures.info.near);
 }
 
 } // namespace tsr

@@ -5,6 +5,8 @@
  */
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "coded_map_options.h"
 #include "commands.h"
@@ -53,15 +55,30 @@ void check_reference(const tsr_map_info &info, const DecodeOptions &options)
                                 : ": give it with --against FILE --reference-id " + id));
 }
 
+/* What is missing is invalid in the map; that there is something is told, no error. */
+int decode_packets(const DecodeOptions &options, const std::vector<std::uint8_t> &bytes)
+{
+    const MapPackets packets = read_map_packets(bytes, options.map);
+    check_reference(packets.info, options);
+    const MapOfPackets decoded = decode_map_packets(packets, options.map);
+    write_disparity_file(options.out, float_disparity(decoded.values_q4, packets.info.width, packets.info.height));
+    print_coded_map(figures_of(packets, decoded), decoded.values_q4, options.out, options.json);
+    return 0;
+}
+
 int decode(const DecodeOptions &options)
 {
     check_files(options);
-    const CodedMap coded = read_coded_map(options.map);
+    std::vector<std::uint8_t> bytes = read_map_file(options.map);
+    if (is_map_packet_file(bytes)) {
+        return decode_packets(options, bytes);
+    }
+    const CodedMap coded = coded_map_of(std::move(bytes), options.map);
     check_reference(coded.info, options);
     const std::optional<HeldMap> held = read_held_map(options.held, coded.info, options.map);
     const std::vector<std::uint16_t> values = decode_map(coded, options.map, held);
     write_disparity_file(options.out, float_disparity(values, coded.info.width, coded.info.height));
-    print_coded_map(coded, values, options.out, options.json);
+    print_coded_map(figures_of(coded), values, options.out, options.json);
     return 0;
 }
 

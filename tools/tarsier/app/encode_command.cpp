@@ -1,5 +1,5 @@
 /*
- * tarsier encode MAP -o OUT.tdm [--step PX] [--near 1] [...]
+ * tarsier encode MAP -o OUT.tdm [--step PX] [--near 1] [--packets N] [...]
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -34,6 +34,7 @@ struct EncodeOptions {
     unsigned near = 0;
     std::optional<unsigned> disparities;
     double d0_px = 0;
+    std::optional<unsigned> packet_len;
     bool json = false;
 };
 
@@ -46,6 +47,9 @@ void check_files(const EncodeOptions &options)
         throw InputError(options.out.string(), "--out", "the name does not end in .tdm");
     }
     check_held_map(options.held);
+    if (options.packet_len && !options.held.against.empty()) {
+        throw InputError("command line", "--packets", "decode alone: leave out --against and --reference-id");
+    }
     std::vector<std::filesystem::path> inputs = {options.map};
     if (!options.held.against.empty()) {
         inputs.push_back(options.held.against);
@@ -77,6 +81,16 @@ void expect_room(const DisparityValues &map, const std::vector<std::uint16_t> &v
     }
 }
 
+/* Packets are decoded once more for what is printed: with near the values are others. */
+int encode_packets(const EncodeOptions &options, const tsr_map_info &info, const std::vector<std::uint16_t> &values)
+{
+    const MapPackets packets = cut_map(info, values, *options.packet_len);
+    const MapOfPackets decoded = decode_map_packets(packets, options.out);
+    write_file_atomically(options.out, map_packet_file(packets));
+    print_coded_map(figures_of(packets, decoded), decoded.values_q4, options.out, options.json);
+    return 0;
+}
+
 int encode(const EncodeOptions &options)
 {
     check_files(options);
@@ -91,10 +105,13 @@ int encode(const EncodeOptions &options)
     info.disparities = map.disparities;
     const std::vector<std::uint16_t> values = quantised(map, info.step_log2);
     expect_room(map, values, 1U << info.step_log2, options.map);
+    if (options.packet_len) {
+        return encode_packets(options, info, values);
+    }
     const std::optional<HeldMap> held = read_held_map(options.held, info, options.map);
     const CodedMap coded = encode_map(info, values, held);
     write_file_atomically(options.out, coded.bytes);
-    print_coded_map(coded, values, options.out, options.json);
+    print_coded_map(figures_of(coded), values, options.out, options.json);
     return 0;
 }
 
@@ -114,6 +131,10 @@ Command declare_encode(CLI::App &command)
     command.add_option("--disparities", options->disparities, "of the matcher, 1 .. 128; default: what the map needs")
         ->check(CLI::Range(1, static_cast<int>(TSR_DISPARITY_COUNT_MAX)));
     command.add_option("--d0", options->d0_px, "the pair's offset, px, to 1/16; only handed on")->capture_default_str();
+    command
+        .add_option("--packets", options->packet_len,
+                    "packets that decode alone, of at most this many bytes; default: one stream")
+        ->check(CLI::Range(TSR_MAP_PACKET_LEN_MIN, static_cast<int>(kMapPacketLenMax)));
     declare_held_map(command, options->held);
     command.add_flag("--json", options->json, "print JSON");
     return [options] { return encode(*options); };

@@ -11,8 +11,10 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "tsr/coding/disparity_values.h"
+#include "tsr/coding/map_packet_file.h"
 #include "tsr/host/input_error.h"
 #include "tsr/host/read_file.h"
 #include "tsr/stereo/disparity_file.h"
@@ -83,30 +85,26 @@ void expect_ok(tsr_status status)
 
 } // namespace
 
-double CodedMap::step_px() const
-{
-    return std::ldexp(1.0, info.step_log2) / TSR_DISPARITY_ONE_Q4;
-}
-
-double CodedMap::d0_px() const
-{
-    return static_cast<double>(info.d0_q4) / TSR_DISPARITY_ONE_Q4;
-}
-
-double CodedMap::bits_per_pixel() const
-{
-    return 8.0 * static_cast<double>(bytes.size()) / (static_cast<double>(info.width) * info.height);
-}
-
 std::uint8_t log2_of_step(double step_px)
 {
     return static_cast<std::uint8_t>(std::lround(std::log2(step_px * TSR_DISPARITY_ONE_Q4)));
 }
 
-CodedMap read_coded_map(const std::filesystem::path &file)
+std::vector<std::uint8_t> read_map_file(const std::filesystem::path &file)
+{
+    std::vector<std::uint8_t> bytes = read_file(file, kMapPacketFileLenMax);
+    if (!is_map_packet_file(bytes) && bytes.size() > kCodedLenMax) {
+        throw InputError(file.string(), "size",
+                         std::to_string(bytes.size()) + " bytes, a coded map has at most " +
+                             std::to_string(kCodedLenMax));
+    }
+    return bytes;
+}
+
+CodedMap coded_map_of(std::vector<std::uint8_t> bytes, const std::filesystem::path &file)
 {
     CodedMap coded;
-    coded.bytes = read_file(file, kCodedLenMax);
+    coded.bytes = std::move(bytes);
     if (tsr_map_read_info(coded.bytes.data(), coded.bytes.size(), &coded.info) != TSR_OK) {
         refuse_header(coded.bytes, file);
     }
@@ -116,7 +114,11 @@ CodedMap read_coded_map(const std::filesystem::path &file)
 HeldMap read_held_map(const std::filesystem::path &file, std::uint16_t id, std::uint8_t step_log2)
 {
     if (is_coded_map(file)) {
-        const CodedMap coded = read_coded_map(file);
+        std::vector<std::uint8_t> bytes = read_map_file(file);
+        if (is_map_packet_file(bytes)) {
+            throw InputError(file.string(), "reference", "is in packets: decode it first, and name the decoded map");
+        }
+        const CodedMap coded = coded_map_of(std::move(bytes), file);
         if (coded.info.has_reference) {
             throw InputError(file.string(), "reference",
                              "was coded against the map with id " + std::to_string(coded.info.reference_id) +

@@ -1,6 +1,6 @@
 /*
- * Files of one coded disparity map (.tdm): exactly its bytes, docs/codec.md, 2.1. What refuses a file throws InputError
- * naming it.
+ * Files of one coded disparity map (.tdm) in one stream: exactly its bytes, docs/codec.md, 2.1. What refuses a file
+ * throws InputError naming it.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -27,9 +27,6 @@ struct CodedMap {
 
     unsigned format_version() const { return bytes[0] & 15U; }
     unsigned prior() const { return bytes[1] >> 4U; }
-    double step_px() const;
-    double d0_px() const;
-    double bits_per_pixel() const;
 };
 
 /* A map that sender and receiver hold, and what they call it. */
@@ -43,10 +40,15 @@ struct HeldMap {
 /* px, multiples of a sixteenth: 1, 0.5, 0.25, 0.125 or 0.0625. */
 std::uint8_t log2_of_step(double step_px);
 
-/* More bytes than any coded map has are not read. Refuses a header that the codec refuses, naming the field. */
-CodedMap read_coded_map(const std::filesystem::path &file);
+/* The bytes of a file of either form: one stream, or packets (tsr/coding/map_packet_file.h). More than any has are not
+ * read. */
+std::vector<std::uint8_t> read_map_file(const std::filesystem::path &file);
 
-/* A .tdm of a map coded alone, as it decodes, or a map file (tsr/stereo/disparity_file.h) quantised to the step. */
+/* Refuses a header that the codec refuses, naming the field; file is what to name. */
+CodedMap coded_map_of(std::vector<std::uint8_t> bytes, const std::filesystem::path &file);
+
+/* A .tdm of one stream coded alone, as it decodes, or a map file (tsr/stereo/disparity_file.h) quantised to the
+ * step. */
 HeldMap read_held_map(const std::filesystem::path &file, std::uint16_t id, std::uint8_t step_log2);
 
 /*
