@@ -113,12 +113,6 @@ static void extend(const struct tsr_picture_rows *rows, unsigned width, unsigned
     }
 }
 
-/* The last two rows of the band become those above the next. */
-static void keep_last_rows(const struct tsr_picture_rows *rows)
-{
-    memcpy(rows->pixels, rows->pixels + TSR_PICTURE_BLOCK * rows->stride, 2u * rows->stride);
-}
-
 static void encode_band(struct tsr_picture_encoder *encoder, const struct tsr_picture_rows *rows, unsigned row_count)
 {
     const struct tsr_range_port port = {.encoder = &encoder->range};
@@ -128,7 +122,7 @@ static void encode_band(struct tsr_picture_encoder *encoder, const struct tsr_pi
     tsr_picture_code_band(&encoder->model, &port, change);
     const uint32_t len = (uint32_t)encoder->range.at - encoder->band_start_len;
     encoder->band_len = encoder->model.band == 1u ? len : (encoder->band_len + len + 1u) / 2u;
-    keep_last_rows(rows);
+    tsr_picture_keep_last_rows(rows);
 }
 
 enum tsr_status tsr_picture_encode_rows(struct tsr_picture_encoder *encoder, const uint8_t *rows, size_t stride,
@@ -227,7 +221,7 @@ enum tsr_status tsr_picture_decode_rows(struct tsr_picture_decoder *decoder, uin
     const struct tsr_picture_rows band = tsr_picture_rows_of(model);
     for (uint16_t y = 0; y < row_count; y++, model->row++) {
         while (needs_band(model)) {
-            keep_last_rows(&band);
+            tsr_picture_keep_last_rows(&band);
             tsr_picture_code_band(model, &port, 0);
         }
         tsr_picture_smooth_row(model, model->row, rows + y * stride);

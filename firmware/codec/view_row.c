@@ -46,11 +46,16 @@ static const uint8_t coarse_value_of[TSR_VIEW_CAP_MAX + 1] = {0, 1, 2, 4, 7};
 static const uint8_t class_of_activity[ACTIVITY_END] = {0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 2, 3, 3,
                                                         3, 3, 3, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4};
 
-void tsr_view_model_reset(struct tsr_view_model *model)
+void tsr_view_clear_rows(struct tsr_view_model *model)
 {
     const size_t rows_len = ROWS * ((size_t)model->info.width + BORDERS);
     memset(model->scratch, model->info.cap, rows_len);
     memset(model->scratch + rows_len, 0, TSR_VIEW_SCRATCH_LEN(model->info.width) - rows_len);
+}
+
+void tsr_view_model_reset(struct tsr_view_model *model)
+{
+    tsr_view_clear_rows(model);
     model->level_of = model->info.coarse ? coarse_level_of : exactly;
     model->value_of = model->info.coarse ? coarse_value_of : exactly;
     model->level_max = model->level_of[model->info.cap];
@@ -67,6 +72,27 @@ void tsr_view_model_reset(struct tsr_view_model *model)
 static uint8_t *row_of(const struct tsr_view_model *model, unsigned row)
 {
     return model->scratch + (size_t)(row % ROWS) * (model->info.width + BORDERS) + IN_FRONT;
+}
+
+uint8_t *tsr_view_row_pixels(const struct tsr_view_model *model)
+{
+    return row_of(model, model->row);
+}
+
+static uint8_t *errors_of(const struct tsr_view_model *model)
+{
+    return model->scratch + ROWS * (size_t)(model->info.width + BORDERS) + IN_FRONT;
+}
+
+/* What lies left and right of the row. */
+static void open_row(const struct tsr_view_model *model, uint8_t *here)
+{
+    here[-1] = here[-2] = row_of(model, model->row + 2u)[0];
+}
+
+static void close_row(const struct tsr_view_model *model, uint8_t *here)
+{
+    here[model->info.width] = here[model->info.width - 1u];
 }
 
 /* One bit a tile in contexts of its neighbours. Flags keep those of the row of tiles above until they are passed. */
@@ -163,6 +189,18 @@ static void code_run(struct tsr_view_model *model, const struct tsr_range_port *
     }
 }
 
+void tsr_view_code_span(struct tsr_view_model *model, const struct tsr_range_port *port, unsigned x, unsigned end)
+{
+    uint8_t *here = tsr_view_row_pixels(model);
+    if (x == 0) {
+        open_row(model, here);
+    }
+    code_run(model, port, here, errors_of(model), x, end);
+    if (end == model->info.width) {
+        close_row(model, here);
+    }
+}
+
 static uint8_t *held_row(const struct tsr_view_model *model)
 {
     return model->held->packed + ((size_t)model->info.width + 1u) / 2u * model->row;
@@ -198,12 +236,12 @@ void tsr_view_code_row(struct tsr_view_model *model, const struct tsr_range_port
     const unsigned width = model->info.width;
     const uint8_t max = (uint8_t)(2u * model->info.cap);
     uint8_t *here = row_of(model, model->row);
-    uint8_t *errors = model->scratch + ROWS * (size_t)(width + BORDERS) + IN_FRONT;
+    uint8_t *errors = errors_of(model);
     uint8_t *flags = errors + width + 1u;
     for (unsigned x = 0; in != NULL && x < width; x++) {
         here[x] = in[x] < max ? in[x] : max;
     }
-    here[-1] = here[-2] = row_of(model, model->row + 2u)[0];
+    open_row(model, here);
     if (!model->info.against_held) {
         code_run(model, port, here, errors, 0, width);
     } else {
@@ -219,7 +257,7 @@ void tsr_view_code_row(struct tsr_view_model *model, const struct tsr_range_port
             }
         }
     }
-    here[width] = here[width - 1u];
+    close_row(model, here);
     if (model->held != NULL) {
         hold_row(model, here);
     }

@@ -28,6 +28,7 @@ SIZES = ((320, 240), (160, 120))
 SSIM_TARGETS = (0.86, 0.90, 0.94)
 STEPS = range(12, 60, 4)
 BITS_MAX = 1 << 22
+CODEC_SOURCES = ("picture*.c", "gray*.c", "view*.c", "packet*.c")
 # Pattern, every how many of its files. Views of one place are alike, so few of each are taken.
 SOURCES = (("mb*/left.png", 1), ("mb2006*/right.png", 1), ("mb2014*/right.png", 1), ("boofcv_bumblebee2/scenes/*", 3),
            ("boofcv_bumblebee2/rectified/*", 2), ("boofcv_bumblebee2/chess/*", 11), ("stereopi_chess_320x240/**/*", 14),
@@ -39,14 +40,15 @@ def build(folder):
     """The codec with its questions recorded, as a library."""
     includes = [f"-I{ROOT}/firmware/{layer}/include" for layer in ("base", "codec")]
     compile_one = ["cc", "-O2", "-fPIC", "-std=c11", *includes, "-c"]
-    sources = [*CODEC.glob("picture*.c"), CODEC / "range_port.c", *(ROOT / "firmware/base").glob("*.c")]
+    sources = [path for pattern in ("range_port.c", "frame.c", *CODEC_SOURCES) for path in CODEC.glob(pattern)]
+    sources = {*sources, *(ROOT / "firmware/base").glob("*.c")}
     for source in sources:
         subprocess.run([*compile_one, "-Dtsr_range_encode_bit=prior_trace_bit", source], cwd=folder, check=True)
     for source in (CODEC / "range.c", ROOT / "tools/train/prior_trace.c"):
         subprocess.run([*compile_one, source], cwd=folder, check=True)
     subprocess.run(["cc", "-shared", "-o", "trace.so", *folder.glob("*.o"), "-lm"], cwd=folder, check=True)
     library = ctypes.CDLL(str(folder / "trace.so"))
-    library.prior_trace_picture.restype = ctypes.c_size_t
+    library.prior_trace_picture.restype = library.prior_trace_count.restype = ctypes.c_size_t
     library.prior_fit.restype = ctypes.c_uint16
     return library
 
@@ -117,11 +119,14 @@ def fit(library, asked_of, context_count):
     return prior, total
 
 
+def rows_of(prior):
+    return ",\n    ".join(", ".join(f"0x{value:04x}" for value in prior[i:i + 14]) for i in range(0, len(prior), 14))
+
+
 def table(prior):
-    rows = [", ".join(f"0x{value:04x}" for value in prior[i:i + 14]) for i in range(0, len(prior), 14)]
     return ("/*\n * What the contexts of pictures start from; tools/train/picture_prior.py writes this file.\n *\n"
             " * SPDX-License-Identifier: Apache-2.0\n */\n#include \"picture_block.h\"\n\n"
-            "const uint16_t tsr_picture_prior[TSR_PICTURE_CONTEXT_COUNT] = {\n    " + ",\n    ".join(rows) + "};\n")
+            "const uint16_t tsr_picture_prior[TSR_PICTURE_CONTEXT_COUNT] = {\n    " + rows_of(prior) + "};\n")
 
 
 def main():

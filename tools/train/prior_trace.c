@@ -1,14 +1,16 @@
 /*
  * Record what the contexts of a codec are asked, and fit the prior that would
- * have coded it in the fewest bits. tools/train/picture_prior.py builds this with
- * the codec, whose tsr_range_encode_bit is renamed to prior_trace_bit.
+ * have coded it in the fewest bits. tools/train/picture_prior.py and packet_prior.py build
+ * this with the codec, whose tsr_range_encode_bit is renamed to prior_trace_bit.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
 #include <math.h>
 #include <stdlib.h>
 
+#include "tsr/codec/gray_packet.h"
 #include "tsr/codec/picture.h"
+#include "tsr/codec/view_packet.h"
 
 #define P_CANDIDATES 11
 #define COUNT_CANDIDATES 16
@@ -19,11 +21,36 @@ static uint8_t scratch[TSR_PICTURE_SCRATCH_LEN(TSR_IMAGE_WIDTH_MAX)];
 static uint8_t coded[TSR_PICTURE_ENCODED_LEN_MAX(TSR_IMAGE_WIDTH_MAX, TSR_IMAGE_HEIGHT_MAX)];
 static uint32_t *asked; /* 2 * context + bit */
 static size_t asked_cap, asked_count;
+static const struct tsr_range_bit *contexts_asked;
+
+/* What these contexts are asked goes to trace from now on. */
+void prior_trace_start(const struct tsr_range_bit *contexts, uint32_t *trace, size_t trace_cap)
+{
+    contexts_asked = contexts;
+    asked = trace;
+    asked_cap = trace_cap;
+    asked_count = 0;
+}
+
+const struct tsr_range_bit *prior_trace_gray_contexts(const struct tsr_gray_packet_encoder *packets)
+{
+    return packets->state.model.contexts;
+}
+
+const struct tsr_range_bit *prior_trace_view_contexts(const struct tsr_view_packet_encoder *packets)
+{
+    return packets->state.model.contexts;
+}
+
+size_t prior_trace_count(void)
+{
+    return asked_count;
+}
 
 void prior_trace_bit(struct tsr_range_encoder *range, struct tsr_range_bit *context, unsigned bit)
 {
     if (asked_count < asked_cap) {
-        asked[asked_count++] = 2u * (uint32_t)(context - encoder.model.contexts) + bit;
+        asked[asked_count++] = 2u * (uint32_t)(context - contexts_asked) + bit;
     }
     tsr_range_encode_bit(range, context, bit);
 }
@@ -34,9 +61,7 @@ size_t prior_trace_picture(uint8_t *pixels, unsigned width, unsigned height, uns
 {
     struct tsr_picture_info info = {(uint16_t)width, (uint16_t)height, (uint8_t)step, (uint8_t)prior};
     size_t len = 0;
-    asked = trace;
-    asked_cap = trace_cap;
-    asked_count = 0;
+    prior_trace_start(encoder.model.contexts, trace, trace_cap);
     if (tsr_picture_encode_start(&encoder, &info, 0, coded, sizeof coded, scratch, sizeof scratch) != TSR_OK ||
         tsr_picture_encode_rows(&encoder, pixels, width, (uint16_t)height) != TSR_OK ||
         tsr_picture_encode_finish(&encoder, &len) != TSR_OK ||
