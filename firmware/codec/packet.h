@@ -1,5 +1,5 @@
 /*
- * Mechanics of packets, docs/codec.md, 2a.1 and 2a.3: the header, where units
+ * Mechanics of packets, docs/codec.md, 2a.1, 3a.1 and 5a.1: the header, where units
  * lie, and filling a packet with as many groups of units as fit.
  *
  * SPDX-License-Identifier: Apache-2.0

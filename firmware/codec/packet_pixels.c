@@ -1,5 +1,5 @@
 /*
- * Packets of gray pixels: docs/codec.md, 2a.3.
+ * Packets of gray pixels: docs/codec.md, 3a and 4a.
  *
  * SPDX-License-Identifier: Apache-2.0
  */

@@ -10,7 +10,7 @@
  * narrower), a strip from top to bottom, its rows from the left. What all packets of an image
  * share (its info) travels otherwise: with a site's description, or in a file's
  * header. Messages are authenticated elsewhere; a packet that was cut is not told
- * from another, unless its header is incomplete. Every bit: docs/codec.md, chapter 2a.1.
+ * from another, unless its header is incomplete. Every bit: docs/codec.md, 3a to 5a.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
