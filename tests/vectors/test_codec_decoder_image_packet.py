@@ -68,8 +68,9 @@ def check_image(rng, kind, how, content, counts):
         check(kind, (width, height), how, packet_id, bytes(damaged))
         counts["packets"] += 1
         counts["literal"] += data[3] >> 2 & 1
-    header = (1 << 30 | packet_id << 27 | int(rng.integers(0, 3)) << 17).to_bytes(4, "little")
-    check(kind, (width, height), how, packet_id, header + rng.integers(0, 256, 80, dtype=np.uint8).tobytes())
+    for literal in (0, 1):
+        header = (1 << 30 | packet_id << 27 | literal << 26 | int(rng.integers(0, 3)) << 17).to_bytes(4, "little")
+        check(kind, (width, height), how, packet_id, header + rng.integers(0, 256, 80, dtype=np.uint8).tobytes())
 
 
 def check_headers(kind, how):
@@ -93,7 +94,6 @@ def main():
                 for _ in range(-(-IMAGES // len(ways))):
                     check_image(rng, kind, how, content, counts)
         print(f"{kind}: {check_headers(kind, ways[0])} headers refused alike")
-    assert counts["literal"] > 10
     print(", ".join(f"{value} {name}" for name, value in counts.items()))
 
 
