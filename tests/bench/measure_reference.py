@@ -6,7 +6,6 @@ Left views of all pairs, cut and reduced as every figure has them. Needs python3
 
 SPDX-License-Identifier: Apache-2.0
 """
-import ctypes
 import pathlib
 import sys
 
@@ -14,24 +13,12 @@ import cv2
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import picture_library  # noqa: E402
 import stereo_pairs  # noqa: E402
 import view_library  # noqa: E402
-from vision_library import ANY, LIB, OK, SIZE, U8, U16, U32, pointer  # noqa: E402
 
-STATE_LEN = 4096  # more than a coder of pictures
-PRIOR_TRAINED = 1
-BLOCK, EXCESS_LEN = 8, 2048
 STEPS = (30, 40)
 NEAR = 4
-
-
-class PictureInfo(ctypes.Structure):
-    _fields_ = [("width", U16), ("height", U16), ("step", U8), ("prior", U8)]
-
-
-LIB.tsr_picture_encode_start.argtypes = [ANY, ANY, U32, ANY, SIZE, ANY, SIZE]
-LIB.tsr_picture_encode_rows.argtypes = LIB.tsr_picture_decode_rows.argtypes = [ANY, ANY, SIZE, U16]
-LIB.tsr_picture_decode_start.argtypes = [ANY, ANY, SIZE, ANY, SIZE, ANY]
 
 
 def ssim(a, b):
@@ -46,18 +33,8 @@ def ssim(a, b):
 
 def code(picture, step):
     """Bytes of a picture, and the picture as it is decoded."""
-    height, width = picture.shape
-    info, length, picture = PictureInfo(width, height, step, PRIOR_TRAINED), SIZE(), np.ascontiguousarray(picture)
-    out, decoded = np.zeros(picture.size + EXCESS_LEN, np.uint8), np.zeros_like(picture)
-    state, scratch = np.zeros(STATE_LEN, np.uint8), np.zeros(11 * (width + BLOCK), np.uint8)
-    assert LIB.tsr_picture_encode_start(pointer(state), ctypes.byref(info), 0, pointer(out), out.size, pointer(scratch),
-                                        scratch.size) == OK
-    assert LIB.tsr_picture_encode_rows(pointer(state), pointer(picture), width, height) == OK
-    assert LIB.tsr_picture_encode_finish(pointer(state), ctypes.byref(length)) == OK
-    assert LIB.tsr_picture_decode_start(pointer(state), pointer(out), length.value, pointer(scratch), scratch.size,
-                                        ctypes.byref(info)) == OK
-    assert LIB.tsr_picture_decode_rows(pointer(state), pointer(decoded), width, height) == OK
-    return length.value, decoded
+    data = picture_library.encode(picture, step)
+    return len(data), picture_library.decode(data)
 
 
 def show(name, views, coder):

@@ -31,10 +31,11 @@ class NoReferenceError(Exception):
 
 
 class RangeDecoder:
-    """Chapter 1."""
+    """Chapter 1. `shift` is that of fixed-rate bits (1.6): 6, but 5 in packets (2a.2)."""
 
-    def __init__(self, data):
+    def __init__(self, data, shift=6):
         self.data = data
+        self.shift = shift
         self.next = 0
         self.range = 2**32 - 1
         self.offset = 0
@@ -52,36 +53,31 @@ class RangeDecoder:
             self.range *= 256
             self.spent += 1
 
-    def bit(self, context):
-        p, n = context
+    def decide(self, p):
+        """A bit that is 1 with probability p / 2^16."""
         bound = (self.range >> 16) * p
-        rate = 655360 // (10 * n + 16)
         if self.offset < bound:
             bit = 1
             self.range = bound
-            context[0] = p + (((65504 - p) * rate) >> 16)
         else:
             bit = 0
             self.offset -= bound
             self.range -= bound
-            context[0] = p - (((p - 32) * rate) >> 16)
-        context[1] = min(n + 1, 60)
         self._renormalise()
+        return bit
+
+    def bit(self, context):
+        p, n = context
+        rate = 655360 // (10 * n + 16)
+        bit = self.decide(p)
+        context[0] = p + (((65504 - p) * rate) >> 16) if bit else p - (((p - 32) * rate) >> 16)
+        context[1] = min(n + 1, 60)
         return bit
 
     def fixed_rate_bit(self, cells, i):
         p = cells[i]
-        bound = (self.range >> 16) * p
-        if self.offset < bound:
-            bit = 1
-            self.range = bound
-            cells[i] = p + ((65536 - p) >> 6)
-        else:
-            bit = 0
-            self.offset -= bound
-            self.range -= bound
-            cells[i] = p - (p >> 6)
-        self._renormalise()
+        bit = self.decide(p)
+        cells[i] = p + ((65536 - p) >> self.shift) if bit else p - (p >> self.shift)
         return bit
 
     def direct(self, b):
@@ -114,6 +110,20 @@ def contexts(*shape):
     if not shape:
         return [32768, 0]
     return [contexts(*shape[1:]) for _ in range(shape[0])]
+
+
+def read_prior(name, count):
+    """The numbers of an array of firmware/codec/NAME_prior.c that starts adaptive bits."""
+    body = (SOURCE / f"firmware/codec/{name}_prior.c").read_text("ascii").partition("= {")[2].partition("}")[0]
+    numbers = [int(number, 0) for number in re.findall(r"\w+", body)]
+    if len(numbers) != count:
+        raise ValueError(f"{name}_prior.c does not hold what the document says")
+    return numbers
+
+
+def trained(number):
+    """1.2: the context that a number of a prior says."""
+    return [number & 0xFFF0, (0, 1, 2, 3, 4, 6, 8, 11, 15, 20, 26, 33, 40, 48, 54, 60)[number % 16]]
 
 
 def median(a, b, c):
@@ -171,13 +181,17 @@ class MapDecoder:
         if self.mode and (reference is None or reference_id != self.reference_id):
             raise NoReferenceError
         self.coder = RangeDecoder(data[header_len:])
+        self._begin()
+        self.reference = {(x, y): self.reference_label(reference[y][x]) for y in range(self.height)
+                          for x in range(self.width)} if self.mode else {}
+
+    def _begin(self):
+        """What the fields of the header decide."""
         self.labels = (16 * self.disparities) >> self.step_log2
         self.label_bits = self.labels.bit_length()
         self.none = self.label_of(INVALID)
         self.last = self.labels // 4
         self.map = {}
-        self.reference = {(x, y): self.reference_label(reference[y][x]) for y in range(self.height)
-                          for x in range(self.width)} if self.mode else {}
         cells = iter(self.CELLS[2 if self.mode else self.near])
         self.flat, self.candidate, self.invalid = shaped(cells, 48), shaped(cells, 6, 32), shaped(cells, 16, 6)
         self.predicted, self.sign = shaped(cells, 6, 6), shaped(cells, 27)

@@ -1,7 +1,8 @@
 """The C codec against the decoders of tests/support/codec_decoder.py, written from docs/codec.md.
 
 The C encodes pictures of every kind, maps also near-lossless and against references; the Python must decode the same
-picture, and both must say the same about damaged bytes, row for row. SEED replays a run:
+picture, and both must say the same about damaged bytes and streams of decisions that no encoder takes, row for row. The
+C encoder's bytes are those that 1.4 says for the decisions in them. SEED replays a run:
 SEED=n python3 tests/vectors/test_codec_decoder.py
 
 SPDX-License-Identifier: Apache-2.0
@@ -21,10 +22,13 @@ SOURCE = pathlib.Path(os.environ.get("TSR_SOURCE", pathlib.Path(__file__).resolv
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(SOURCE / "tests" / "support"))
 import codec_decoder as reference  # noqa: E402
+import codec_pictures  # noqa: E402
+from codec_encoder import Decisions, Encoder  # noqa: E402
 
 OK, AGAIN, ERR_FORMAT, ERR_VERSION, ERR_REFERENCE = 0, 1, -4, -5, -13
 REFERENCES = (None, "equal", "shifted", "changed", "noise", "other", "invalid")
 STATE_LEN = 16384  # more than any coder's state
+SLOW_PIXELS = 4096  # a picture of as many is only decoded, once
 
 
 def load_library():
@@ -107,54 +111,50 @@ def decode(kind, data, dtype, info, against=None):
     return status, rows
 
 
-def make_map(rng, kind, width, height, disparities, step_log2):
-    steps = (16 * disparities) >> step_log2
-    y, x = np.mgrid[0:height, 0:width]
-    if kind == "noise":
-        d = rng.integers(0, steps, (height, width))
-    elif kind == "slope":
-        d = (x * rng.integers(1, 5) + y + rng.integers(0, 2, (height, width))) // 3 % steps
-    elif kind == "blocks":
-        d = rng.integers(0, steps, (height // 8 + 1, width // 8 + 1))[y // 8, x // 8]
-        d = np.clip(d + rng.integers(-1, 2, (height, width)) * (rng.random((height, width)) < 0.2), 0, steps - 1)
-    else:
-        d = np.zeros((height, width), np.int64)
-    result = (d << step_log2).astype(np.uint16)
-    share = {"empty": 1.0, "noise": 0.1, "blocks": 0.2}.get(kind, 0.02)
-    coarse = rng.random((height // 4 + 1, width // 4 + 1))[y // 4, x // 4]
-    result[coarse < share] = reference.INVALID
-    return result
-
-
 def make_reference(rng, kind, pixels, info):
     """A map of the same shape, its rows apart; "other" has another step and other disparities."""
     height, width = pixels.shape
-    noise = make_map(rng, "noise", width, height, info.disparities, info.step_log2)
+    noise = codec_pictures.synthetic_map(rng, "noise", width, height, info.disparities, info.step_log2)
     result = np.zeros((height, width + int(rng.integers(0, 4))), np.uint16)[:, :width]
     result[:] = {"equal": pixels,
                  "shifted": np.roll(pixels, (int(rng.integers(0, 2)), 1), (0, 1)),
                  "changed": np.where(rng.random((height, width)) < 0.1, noise, pixels),
                  "noise": noise,
-                 "other": make_map(rng, "noise", width, height, 128, 0),
+                 "other": codec_pictures.synthetic_map(rng, "noise", width, height, 128, 0),
                  "invalid": reference.INVALID}[kind]
     return result
 
 
-def make_gray(rng, kind, width, height):
-    y, x = np.mgrid[0:height, 0:width]
-    if kind == "noise":
-        return rng.integers(0, 256, (height, width)).astype(np.uint8)
-    if kind == "steps":
-        return np.where((x // 5 + y // 3) % 2 == 0, 0, 255).astype(np.uint8)
-    if kind == "flat":
-        return np.full((height, width), rng.integers(0, 256), np.uint8)
-    wave = 128 + 90 * np.sin(x / 9 + rng.random()) * np.cos(y / 7) + rng.normal(0, 4, (height, width))
-    return np.clip(wave, 0, 255).astype(np.uint8)
+def check_rewritten(decoder, data, rows):
+    """1.4: the bytes that the decisions in them say."""
+    start = data[:len(data) - len(decoder.coder.data)]
+    decoder.coder = Encoder(decoder.coder)
+    assert decoder.decode() == rows
+    assert start + decoder.coder.finish() == data
+
+
+def check_chosen(rng, kind, start, dtype, make_info, make_decoder, against=None):
+    """Decisions of which a share pays no regard to the contexts: whether they are refused."""
+    decoder = make_decoder(start)
+    decoder.coder = Encoder(Decisions(rng, float(rng.choice((0, 0.01, 0.1, 1)))))
+    try:
+        rows = decoder.decode()
+    except reference.FormatError as error:
+        rows = error.rows
+    data = start + decoder.coder.finish()
+
+    def decode_again(bytes_):
+        again = make_decoder(bytes_)
+        found = again.decode()
+        assert found == rows
+        return again, found
+
+    return check_bytes(kind, data, dtype, make_info(), against, decode_again)
 
 
 def check_map(rng, kind, reference_kind, info, counts):
     where = (kind, reference_kind, [getattr(info, field) for field, _ in info._fields_])
-    pixels = make_map(rng, kind, info.width, info.height, info.disparities, info.step_log2)
+    pixels = codec_pictures.synthetic_map(rng, kind, info.width, info.height, info.disparities, info.step_log2)
     name = int(rng.integers(0, 65536))
     against = rows_against = None
     if reference_kind is not None:
@@ -178,11 +178,43 @@ def check_map(rng, kind, reference_kind, info, counts):
             assert check_bytes("map", data, np.uint16, MapInfo(), other,
                                lambda bytes_, rows_=other_rows: reference.decode_map(bytes_, rows_, name ^ 1)), where
     counts["map"] += 1
+    if info.width * info.height < SLOW_PIXELS and rng.random() < 0.5:
+        check_rewritten(reference.MapDecoder(data, rows_against, name), data, rows)
+        counts["rewritten"] += 1
+    elif info.width * info.height < SLOW_PIXELS:
+        counts["refused"] += check_chosen(rng, "map", data[:9 if against is None else 11], np.uint16, MapInfo,
+                                          lambda bytes_: reference.MapDecoder(bytes_, rows_against, name), against)
+        counts["chosen"] += 1
     # Not the bytes of the shape: a larger map takes long.
     counts["refused"] += check_damaged(rng, "map", data, np.uint16, MapInfo,
                                        lambda bytes_: reference.decode_map(bytes_, rows_against, name),
                                        9 if against is None else 11, (0, 1, 2, 7, 8, 9, 10), against)
     counts["damaged"] += 1
+
+
+def check_gray(rng, pixels, near, counts):
+    height, width = pixels.shape
+    data = encode("gray", GrayInfo(width, height, near), pixels)
+    header, rows = reference.decode_gray(data)
+    error = np.abs(np.array(rows, int) - pixels).max()
+    assert error <= (4 if near == 8 else near) and header.near == near, (width, height, near, error)
+    status, decoded = decode("gray", data, np.uint8, GrayInfo())
+    assert status == OK and decoded == rows
+    counts["gray"] += 1
+    if width * height < SLOW_PIXELS:
+        check_rewritten(reference.GrayDecoder(data), data, rows)
+        counts["rewritten"] += 1
+        check_chosen(rng, "gray", data[:6], np.uint8, GrayInfo, reference.GrayDecoder)
+        counts["chosen"] += 1
+    counts["refused"] += check_damaged(rng, "gray", data, np.uint8, GrayInfo, reference.decode_gray, 6)
+    counts["damaged"] += 1
+
+
+def check_gray_headers():
+    for first in range(256):
+        for second in (0, 7, 8, 9, 15, 16, 25):
+            for size in (b"", b"\1\0\1", b"\1\0\1\0", b"\0\0\1\0", b"\1\0\0\0", b"\x81\2\1\0", b"\1\0\xe1\1"):
+                check_bytes("gray", bytes((first, second)) + size, np.uint8, GrayInfo(), None, reference.decode_gray)
 
 
 def check_damaged(rng, kind, data, dtype, make_info, decode_reference, header_len, header_bytes=(0,), against=None):
@@ -216,7 +248,7 @@ def main():
     seed = int(os.environ.get("SEED", "1"))
     print(f"replay: SEED={seed} python3 tests/vectors/test_codec_decoder.py")
     rng = np.random.default_rng(seed)
-    counts = {"map": 0, "gray": 0, "damaged": 0, "refused": 0}
+    counts = dict.fromkeys(("map", "gray", "real gray", "rewritten", "chosen", "damaged", "refused"), 0)
     sizes = [(1, 1), (1, 9), (2, 3), (3, 2), (5, 7), (17, 11), (64, 24)]
     variants = [(near, reference_kind) for near in (0, 1) for reference_kind in REFERENCES]
     for step_log2 in range(5):
@@ -229,19 +261,14 @@ def main():
                 info = MapInfo(width, height, disparities, step_log2, near, int(rng.integers(-32768, 32768)))
                 check_map(rng, kind, reference_kind, info, counts)
     for near in range(9):
-        for kind in ("noise", "steps", "flat", "wave"):
+        for kind in codec_pictures.KINDS:
             for width, height in sizes + ([(160, 120)] if near in (0, 2, 8) else []):
-                info = GrayInfo(width, height, near)
-                pixels = make_gray(rng, kind, width, height)
-                data = encode("gray", info, pixels)
-                header, rows = reference.decode_gray(data)
-                error = np.abs(np.array(rows, int) - pixels).max()
-                assert error <= (4 if near == 8 else near) and header.near == near, (kind, width, height, near, error)
-                status, decoded = decode("gray", data, np.uint8, GrayInfo())
-                assert status == OK and decoded == rows
-                counts["gray"] += 1
-                counts["refused"] += check_damaged(rng, "gray", data, np.uint8, GrayInfo, reference.decode_gray, 6)
-                counts["damaged"] += 1
+                check_gray(rng, codec_pictures.synthetic(rng, kind, width, height), near, counts)
+    for _, left, _ in codec_pictures.pairs(157, 117, 2):
+        for near in (0, 1, 4, 8):
+            check_gray(rng, left, near, counts)
+            counts["real gray"] += 1
+    check_gray_headers()
     print(", ".join(f"{value} {name}" for name, value in counts.items()))
 
 
