@@ -5,10 +5,13 @@ SPDX-License-Identifier: Apache-2.0
 import re
 
 import codec_decoder
+import codec_decoder_picture
+import codec_decoder_view
 from codec_decoder import FormatError, NoReferenceError, RangeDecoder, VersionError, klass, median, shaped
 
 GROUP = 8
 STRIP = 16
+BLOCK, PICTURE_STRIP = 8, 4
 COUNTS = (0, 1, 2, 3, 4, 6, 8, 11, 15, 20, 26, 33, 40, 48, 54, 60)
 
 
@@ -86,4 +89,106 @@ class GrayPacketDecoder(PacketDecoder):
                 E = abs(R - P)
             pixels[x, y], errors[x, y] = R, E
             result.append((start + x, y, R))
+        return result
+
+
+class ViewPacketDecoder(PacketDecoder):
+    """Chapter 4a; info: width, height, cap, coarse."""
+
+    PRIORS = read_packet_prior("view", 2, 392)
+    level = codec_decoder_view.ViewDecoder.level
+
+    def __init__(self, info, packet_id, data):
+        self.width, self.height, self.cap, self.coarse = info
+        super().__init__(data, packet_id, self.width * self.height, GROUP, 17)
+        self.level_of = codec_decoder_view.COARSE_LEVEL_OF if self.coarse else range(8)
+        self.value_of = codec_decoder_view.COARSE_VALUE_OF if self.coarse else range(8)
+        self.L = 4 if self.coarse else self.cap
+        self.contexts = shaped(iter([list(context) for context in self.PRIORS[self.coarse]]), 8, 6, 8)
+
+    def value(self, level):
+        return -self.value_of[-level] if level < 0 else self.value_of[level]
+
+    def literal_value(self):
+        v = min(self.coder.direct(4), 2 * self.cap) - self.cap
+        return self.value(-self.level_of[-v] if v < 0 else self.level_of[v])
+
+    def decode(self):
+        """(x, y, P) of each of the packet's."""
+        values, errors, result = {}, {}, []
+        for number in self.numbers:
+            start, strip_width, x, y = place(number, self.width, self.height, STRIP)
+            if x == y == 0:
+                values, errors = {}, {}
+
+            def at(dx, dy):
+                i, j = x + dx, y + dy
+                if j < 0:
+                    return 0
+                if i < 0:
+                    return values.get((0, j - 1), 0)
+                return values.get((min(i, strip_width - 1), j), 0)
+
+            def error_at(dx, dy):
+                return errors.get((x + dx, y + dy), 0)
+
+            if self.literal:
+                v = self.literal_value()
+            else:
+                W, WW, N, NW, NE, NN, NWW = at(-1, 0), at(-2, 0), at(0, -1), at(-1, -1), at(1, -1), at(0, -2), at(-2, -1)
+                m = 6 * W - 2 * WW + 15 * N - 2 * NW + 2 * NE - 5 * NN + NWW
+                e = min((abs(m) + 8) >> 4, self.cap)
+                activity = klass(2 * error_at(-1, 0) + 2 * error_at(0, -1) + error_at(-2, 0) + error_at(1, -1) +
+                                 abs(W - NW) + abs(N - NW) + abs(NE - N), (2, 6, 11, 18, 27))
+                v = self.value(self.level(e, activity))
+                errors[x, y] = abs(v - e)
+                v = -v if m < 0 else v
+            values[x, y] = v
+            result.append((start + x, y, v + self.cap))
+        return result
+
+
+class PicturePacketDecoder(PacketDecoder):
+    """Chapter 5a; info: width, height, step."""
+
+    PRIOR = codec_decoder_picture.PictureDecoder.PRIOR
+
+    def __init__(self, info, packet_id, data):
+        self.width, self.height, step = info[:3]
+        self.across, self.down = -(-self.width // BLOCK), -(-self.height // BLOCK)
+        super().__init__(data, packet_id, self.across * self.down, 1, 13)
+        header = bytes([1, 0x40 | min(step + 4 * self.coarser, 63), 2 * BLOCK, 0, 2 * BLOCK, 0])
+        self.corner = codec_decoder_picture.PictureDecoder(header)  # with prior 1; of a block and its neighbours
+        self.corner.coder = self.coder
+        self.corner.allowed = 1 << 60
+
+    def block(self, blocks, x, y):
+        """Decode block (x, y) of the strip, given those of the packet in it: (block, rows of pixels)."""
+        (left, left_pixels), (above, above_pixels) = (blocks.get(at, (None, None)) for at in ((x - 1, y), (x, y - 1)))
+        block, levels = self.corner.block(left, above)
+        first_x, first_y, pixels = BLOCK if left else 0, BLOCK if above else 0, self.corner.pixels
+        for i in range(BLOCK):
+            if left:
+                pixels[first_y + i][BLOCK - 1] = left_pixels[i][-1]
+            if above:
+                pixels[BLOCK - 1][first_x + i] = above_pixels[-1][i]
+        self.corner.reconstruct(block, levels, first_x, first_y)
+        return block, [row[first_x:first_x + BLOCK] for row in pixels[first_y:first_y + BLOCK]]
+
+    def decode(self):
+        """(x, y, pixel) of each of the packet's before smoothing; self.limits of its blocks."""
+        blocks, result, self.limits = {}, [], {}
+        for number in self.numbers:
+            start, _, x, y = place(number, self.across, self.down, PICTURE_STRIP)
+            if x == y == 0:
+                blocks = {}
+            if self.literal:
+                mean, limit = self.coder.direct(8), 59
+                pixels = [[mean] * BLOCK] * BLOCK
+            else:
+                block, pixels = blocks[x, y] = self.block(blocks, x, y)
+                limit = block.limit
+            self.limits[start + x, y] = limit
+            result += [(BLOCK * (start + x) + j, BLOCK * y + i, pixels[i][j]) for i in range(BLOCK) for j in range(BLOCK)
+                       if BLOCK * (start + x) + j < self.width and BLOCK * y + i < self.height]
         return result

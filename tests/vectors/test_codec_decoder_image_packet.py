@@ -25,8 +25,11 @@ from codec_decoder import FormatError, NoReferenceError, VersionError  # noqa: E
 from vision_library import LIB  # noqa: E402
 
 STATUS = {FormatError: -4, VersionError: -5, NoReferenceError: -13}
-DECODERS = {"gray": reference.GrayPacketDecoder}
-WAYS = {"gray": [(near,) for near in range(9)]}  # fields of info after width and height
+DECODERS = {"gray": reference.GrayPacketDecoder, "view": reference.ViewPacketDecoder,
+            "picture": reference.PicturePacketDecoder}
+WAYS = {"gray": [(near,) for near in range(9)],  # fields of info after width and height
+        "view": [(cap, False) for cap in range(1, 8)] + [(7, True)],
+        "picture": [(step, 1) for step in (0, 12, 24, 36, 48, 63)]}
 CONTENTS = ("flat", "slope", "blocks", "noise")
 IMAGES = 12  # of each way and content
 
@@ -43,8 +46,10 @@ def check(kind, info, how, packet_id, data):
     """That both say the same of these bytes; gives the status."""
     width, height = info
     expected, pixels = np.zeros((height, width), np.uint8), []
+    decoder = None
     try:
-        pixels, status = DECODERS[kind]((width, height, *how), packet_id, data).decode(), 0
+        decoder = DECODERS[kind]((width, height, *how), packet_id, data)
+        pixels, status = decoder.decode(), 0
     except (FormatError, VersionError, NoReferenceError) as error:
         status = STATUS[type(error)]
     for x, y, pixel in pixels:
@@ -53,6 +58,9 @@ def check(kind, info, how, packet_id, data):
     where = f"{kind} {width}x{height} {how} id {packet_id}: {data.hex()}"
     assert receiver.take(data)[0] == status, where
     assert np.array_equal(receiver.image, expected), where
+    if kind == "picture" and decoder:
+        marks = receiver.arrived.reshape(-(-height // 8), -1)
+        assert {(x, y): marks[y, x] - 1 for y, x in zip(*np.nonzero(marks))} == decoder.limits, where
     return status
 
 
