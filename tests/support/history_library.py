@@ -64,10 +64,19 @@ def encode(image, near, held, tiles=None):
     return out[:length.value].tobytes()
 
 
-def decode(data, held):
+def try_decode(data, held):
+    """The image of these bytes; a status instead if they are refused."""
     state, scratch, info = np.zeros(STATE_LEN, np.uint8), np.zeros(8192, np.uint8), Info()
-    assert LIB.tsr_gray_history_decode_start(pointer(state), data, len(data), held.at, pointer(scratch), scratch.size,
-                                             ctypes.byref(info)) == OK
+    status = LIB.tsr_gray_history_decode_start(pointer(state), data, len(data), held.at, pointer(scratch), scratch.size,
+                                               ctypes.byref(info))
+    if status != OK:
+        return status
     image = np.zeros((info.height, info.width), np.uint8)
     assert LIB.tsr_gray_history_decode_rows(pointer(state), pointer(image), info.width, info.height) == OK
+    return image
+
+
+def decode(data, held):
+    image = try_decode(data, held)
+    assert not isinstance(image, int), image
     return image
