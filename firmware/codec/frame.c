@@ -8,6 +8,8 @@
 #include "tsr/base/bytes.h"
 #include "tsr/base/image.h"
 
+#define TILE_BITS_ALLOWED 12u
+
 bool tsr_codec_frame_is_valid_size(uint16_t width, uint16_t height)
 {
     return width >= 1 && width <= TSR_IMAGE_WIDTH_MAX && height >= 1 && height <= TSR_IMAGE_HEIGHT_MAX;
@@ -44,6 +46,17 @@ enum tsr_status tsr_codec_frame_check_rows(const struct tsr_range_encoder *range
 enum tsr_status tsr_codec_frame_progress(const struct tsr_range_encoder *range, unsigned rows_left)
 {
     return tsr_codec_frame_is_lost(range) ? TSR_ERR_NOBUF : rows_left > 0 ? TSR_AGAIN : TSR_OK;
+}
+
+uint32_t tsr_codec_frame_code_tiles(const struct tsr_range_port *port,
+                                    struct tsr_range_bit contexts[TSR_CODEC_FRAME_TILE_CONTEXTS], uint8_t *flags,
+                                    const uint8_t *tiles, unsigned count)
+{
+    for (unsigned i = 0; i < count; i++) {
+        const unsigned around = flags[i] + 2u * flags[i + 1u] + 4u * flags[i + 2u];
+        flags[i + 1u] = tsr_port_bit(port, &contexts[around], tiles != NULL && tiles[i] != 0) ? 1u : 0u;
+    }
+    return TILE_BITS_ALLOWED * count;
 }
 
 enum tsr_status tsr_codec_frame_finish(struct tsr_range_encoder *range, unsigned rows_left, size_t header_len,

@@ -15,8 +15,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "range_port.h"
 #include "tsr/base/status.h"
-#include "tsr/codec/range.h"
 
 #define TSR_CODEC_FRAME_HEADER_LEN 6u
 
@@ -46,6 +46,21 @@ enum tsr_status tsr_codec_frame_check_rows(const struct tsr_range_encoder *range
 
 /* What a call of rows returns once they are coded. */
 enum tsr_status tsr_codec_frame_progress(const struct tsr_range_encoder *range, unsigned rows_left);
+
+/* Contexts of the flags of tiles, docs/codec.md, 4.4. */
+#define TSR_CODEC_FRAME_TILE_CONTEXTS 8u
+
+/*
+ * Code the flags of a row of count tiles.
+ *
+ *   flags   [count + 2] in and out: of the row above, then of this one, at 1 .. count; the first and the last stay 0
+ *   tiles   [count] in, 1 = coded; null in a decoder
+ *
+ * Returns the bits by which what may be spent grows.
+ */
+uint32_t tsr_codec_frame_code_tiles(const struct tsr_range_port *port,
+                                    struct tsr_range_bit contexts[TSR_CODEC_FRAME_TILE_CONTEXTS], uint8_t *flags,
+                                    const uint8_t *tiles, unsigned count);
 
 /*
  * End the stream of a frame whose payload follows header_len bytes; *len, the length of both, only with TSR_OK.

@@ -111,7 +111,7 @@ void tsr_gray_code_span(struct tsr_gray_model *model, const struct tsr_range_por
     const unsigned width = model->info.width;
     uint8_t *const here = tsr_gray_row_pixels(model);
     const uint8_t *const up = model->scratch + (size_t)(1u - model->row % 2u) * width;
-    uint8_t *const errors = model->scratch + 2u * (size_t)width;
+    uint8_t *const errors = tsr_gray_row_errors(model);
     for (; x < end; x++) {
         struct around a;
         look_around(&a, here, up, errors, x, width);

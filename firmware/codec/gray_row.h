@@ -21,6 +21,12 @@ void tsr_gray_model_reset(struct tsr_gray_model *model);
 /* Pixels of row model->row: the encoder fills them before, the coder replaces them by the decoded ones. */
 uint8_t *tsr_gray_row_pixels(const struct tsr_gray_model *model);
 
+/* Prediction errors of the row, of which those of the row above take the place until they are coded. */
+static inline uint8_t *tsr_gray_row_errors(const struct tsr_gray_model *model)
+{
+    return model->scratch + 2u * (size_t)model->info.width;
+}
+
 /* Code columns x .. end - 1 of the row. */
 void tsr_gray_code_span(struct tsr_gray_model *model, const struct tsr_range_port *port, unsigned x, unsigned end);
 

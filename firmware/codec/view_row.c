@@ -19,6 +19,7 @@
 
 #include <string.h>
 
+#include "frame.h"
 #include "tsr/base/crc.h"
 
 #define IN_FRONT 2u
@@ -31,12 +32,11 @@
 #define DISTANCES 3u
 #define LITERAL_BITS 4u
 #define WEIGHTS 15 /* of all neighbours together */
-#define TILE_BITS_ALLOWED 12u
 
 /* Where each question's contexts begin. */
 #define LEVELS_AT 0u
 #define TILES_AT (LEVELS_AT + (TSR_VIEW_CAP_MAX + 1u) * ACTIVITY_COUNT * NODES)
-#define CONTEXTS_END (TILES_AT + 8u)
+#define CONTEXTS_END (TILES_AT + TSR_CODEC_FRAME_TILE_CONTEXTS)
 _Static_assert(CONTEXTS_END == TSR_VIEW_CONTEXT_COUNT, "the public header sizes the model");
 
 static const uint8_t exactly[TSR_VIEW_CAP_MAX + 1] = {0, 1, 2, 3, 4, 5, 6, 7};
@@ -93,19 +93,6 @@ static void open_row(const struct tsr_view_model *model, uint8_t *here)
 static void close_row(const struct tsr_view_model *model, uint8_t *here)
 {
     here[model->info.width] = here[model->info.width - 1u];
-}
-
-/* One bit a tile in contexts of its neighbours. Flags keep those of the row of tiles above until they are passed. */
-static void code_tiles(struct tsr_view_model *model, const struct tsr_range_port *port, uint8_t *flags,
-                       const uint8_t *tiles)
-{
-    const unsigned count = (unsigned)TSR_VIEW_TILES_ACROSS(model->info.width);
-    for (unsigned i = 0; i < count; i++) {
-        const unsigned around = flags[i] + 2u * flags[i + 1] + 4u * flags[i + 2];
-        flags[i + 1] =
-            tsr_port_bit(port, &model->contexts[TILES_AT + around], tiles != NULL && tiles[i] != 0) ? 1u : 0u;
-    }
-    model->allowed_bits += TILE_BITS_ALLOWED * count;
 }
 
 /* The level, given the one that is expected. */
@@ -246,7 +233,8 @@ void tsr_view_code_row(struct tsr_view_model *model, const struct tsr_range_port
         code_run(model, port, here, errors, 0, width);
     } else {
         if (model->row % TSR_VIEW_TILE_PX == 0) {
-            code_tiles(model, port, flags, tiles);
+            const unsigned count = (unsigned)TSR_VIEW_TILES_ACROSS(width);
+            model->allowed_bits += tsr_codec_frame_code_tiles(port, &model->contexts[TILES_AT], flags, tiles, count);
         }
         for (unsigned x = 0; x < width; x += TSR_VIEW_TILE_PX) {
             const unsigned end = x + TSR_VIEW_TILE_PX < width ? x + TSR_VIEW_TILE_PX : width;

@@ -11,6 +11,7 @@
 
 #include "codec_content.h"
 #include "codec_random.h"
+#include "codec_seed.h"
 #include "tsr/codec/picture.h"
 #include "unity.h"
 
@@ -27,20 +28,8 @@ static uint8_t out[TSR_PICTURE_ENCODED_LEN_MAX(WIDTH_MAX, HEIGHT_MAX)];
 static uint8_t out_of_chunks[sizeof out];
 static struct tsr_picture_encoder encoder;
 static struct tsr_picture_decoder decoder;
-static const char *program;
-static uint64_t seed;
 
-void setUp(void)
-{
-    seed = 0;
-}
-
-void tearDown(void)
-{
-    if (Unity.CurrentTestFailed && seed != 0) {
-        printf("failed; replay: SEED=%llu RUNS=1 %s\n", (unsigned long long)seed, program);
-    }
-}
+void setUp(void) {}
 
 static void draw(struct codec_random *random, const struct tsr_picture_info *info, enum content content, size_t stride)
 {
@@ -141,12 +130,7 @@ static void check_seed(void)
 
 static void test_random_pictures(void)
 {
-    const uint64_t first = codec_setting("SEED", 1);
-    const uint64_t end = first + codec_setting("RUNS", 1500);
-    printf("replay all: SEED=%llu %s\n", (unsigned long long)first, program);
-    for (seed = first; seed < end; seed++) {
-        check_seed();
-    }
+    check_seeds(1500, check_seed);
 }
 
 static void test_small_shapes(void)

@@ -12,27 +12,14 @@
 #ifndef TSR_TESTS_CODEC_PACKETS_PROPERTY_H
 #define TSR_TESTS_CODEC_PACKETS_PROPERTY_H
 
-#include <stdio.h>
-
 #include "codec_packets.h"
+#include "codec_seed.h"
 
 #define PACKETS_RUNS 250
 
 static uint8_t expected[sizeof image];
-static const char *program;
-static uint64_t seed;
 
-void setUp(void)
-{
-    seed = 0;
-}
-
-void tearDown(void)
-{
-    if (Unity.CurrentTestFailed && seed != 0) {
-        printf("failed; replay: SEED=%llu RUNS=1 %s\n", (unsigned long long)seed, program);
-    }
-}
+void setUp(void) {}
 
 static struct PACKETS(info) draw_info(struct codec_random *random);
 static uint8_t draw_pixel(struct codec_random *random, unsigned content, unsigned x, unsigned y);
@@ -93,12 +80,7 @@ static void check_seed(void)
 
 static void test_random_images(void)
 {
-    const uint64_t first = codec_setting("SEED", 1);
-    const uint64_t end = first + codec_setting("RUNS", PACKETS_RUNS);
-    printf("replay all: SEED=%llu %s\n", (unsigned long long)first, program);
-    for (seed = first; seed < end; seed++) {
-        check_seed();
-    }
+    check_seeds(PACKETS_RUNS, check_seed);
 }
 
 /* Whatever comes has a named status and touches its own units only. */
