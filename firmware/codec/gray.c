@@ -22,7 +22,7 @@ _Static_assert(TSR_GRAY_SLACK_LEN + 1u + 24u + 1u + TSR_RANGE_FINISH_LEN_MAX <= 
 
 static bool is_valid_info(const struct tsr_gray_info *info)
 {
-    return tsr_frame_is_valid_size(info->width, info->height) && info->near <= TSR_GRAY_NEAR_BY_ACTIVITY;
+    return tsr_codec_frame_is_valid_size(info->width, info->height) && info->near <= TSR_GRAY_NEAR_BY_ACTIVITY;
 }
 
 size_t tsr_gray_encoded_len_max(const struct tsr_gray_info *info)
@@ -49,10 +49,10 @@ enum tsr_status tsr_gray_encode_start(struct tsr_gray_encoder *encoder, const st
     if (out_cap < TSR_GRAY_HEADER_LEN || scratch_cap < TSR_GRAY_SCRATCH_LEN(info->width)) {
         return TSR_ERR_NOBUF;
     }
-    tsr_frame_write_header(out, &(struct tsr_frame_header){.version_mode = TSR_GRAY_FORMAT_VERSION,
-                                                           .options = info->near,
-                                                           .width = info->width,
-                                                           .height = info->height});
+    tsr_codec_frame_write_header(out, &(struct tsr_codec_frame_header){.version_mode = TSR_GRAY_FORMAT_VERSION,
+                                                                       .options = info->near,
+                                                                       .width = info->width,
+                                                                       .height = info->height});
     start_model(&encoder->model, info, scratch);
     tsr_range_encode_start(&encoder->range, out + TSR_GRAY_HEADER_LEN, out_cap - TSR_GRAY_HEADER_LEN);
     return TSR_OK;
@@ -69,17 +69,17 @@ enum tsr_status tsr_gray_encode_rows(struct tsr_gray_encoder *encoder, const uin
     if (encoder == NULL || rows == NULL) {
         return TSR_ERR_ARG;
     }
-    const enum tsr_status status =
-        tsr_frame_check_rows(&encoder->range, encoder->model.info.width, rows_left(&encoder->model), stride, row_count);
+    const enum tsr_status status = tsr_codec_frame_check_rows(&encoder->range, encoder->model.info.width,
+                                                              rows_left(&encoder->model), stride, row_count);
     if (status != TSR_OK) {
         return status;
     }
     const struct tsr_range_port port = {.encoder = &encoder->range};
-    for (uint16_t y = 0; y < row_count && !tsr_frame_is_lost(&encoder->range); y++) {
+    for (uint16_t y = 0; y < row_count && !tsr_codec_frame_is_lost(&encoder->range); y++) {
         memcpy(tsr_gray_row_pixels(&encoder->model), rows + y * stride, encoder->model.info.width);
         tsr_gray_code_row(&encoder->model, &port);
     }
-    return tsr_frame_progress(&encoder->range, rows_left(&encoder->model));
+    return tsr_codec_frame_progress(&encoder->range, rows_left(&encoder->model));
 }
 
 enum tsr_status tsr_gray_encode_finish(struct tsr_gray_encoder *encoder, size_t *len)
@@ -87,7 +87,7 @@ enum tsr_status tsr_gray_encode_finish(struct tsr_gray_encoder *encoder, size_t 
     if (encoder == NULL || len == NULL) {
         return TSR_ERR_ARG;
     }
-    return tsr_frame_finish(&encoder->range, rows_left(&encoder->model), TSR_GRAY_HEADER_LEN, len);
+    return tsr_codec_frame_finish(&encoder->range, rows_left(&encoder->model), TSR_GRAY_HEADER_LEN, len);
 }
 
 enum tsr_status tsr_gray_read_info(const uint8_t *bytes, size_t len, struct tsr_gray_info *info)
@@ -95,8 +95,8 @@ enum tsr_status tsr_gray_read_info(const uint8_t *bytes, size_t len, struct tsr_
     if (bytes == NULL || info == NULL) {
         return TSR_ERR_ARG;
     }
-    struct tsr_frame_header header;
-    if (!tsr_frame_read_header(bytes, len, &header)) {
+    struct tsr_codec_frame_header header;
+    if (!tsr_codec_frame_read_header(bytes, len, &header)) {
         return TSR_ERR_FORMAT;
     }
     if (header.version_mode != TSR_GRAY_FORMAT_VERSION || header.options >> 4 != 0) {
@@ -136,7 +136,7 @@ enum tsr_status tsr_gray_decode_rows(struct tsr_gray_decoder *decoder, uint8_t *
         return TSR_ERR_ARG;
     }
     const enum tsr_status status =
-        tsr_frame_check_rows(NULL, decoder->model.info.width, rows_left(&decoder->model), stride, row_count);
+        tsr_codec_frame_check_rows(NULL, decoder->model.info.width, rows_left(&decoder->model), stride, row_count);
     if (status != TSR_OK) {
         return status;
     }
@@ -146,5 +146,5 @@ enum tsr_status tsr_gray_decode_rows(struct tsr_gray_decoder *decoder, uint8_t *
         tsr_gray_code_row(&decoder->model, &port);
         memcpy(rows + y * stride, pixels, decoder->model.info.width);
     }
-    return tsr_frame_progress(NULL, rows_left(&decoder->model));
+    return tsr_codec_frame_progress(NULL, rows_left(&decoder->model));
 }

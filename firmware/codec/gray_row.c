@@ -106,13 +106,13 @@ static uint8_t code_pixel(struct tsr_gray_model *model, const struct tsr_range_p
     return (uint8_t)(coded < 0 ? 0 : coded > 255 ? 255 : coded);
 }
 
-void tsr_gray_code_row(struct tsr_gray_model *model, const struct tsr_range_port *port)
+void tsr_gray_code_span(struct tsr_gray_model *model, const struct tsr_range_port *port, unsigned x, unsigned end)
 {
     const unsigned width = model->info.width;
     uint8_t *const here = tsr_gray_row_pixels(model);
     const uint8_t *const up = model->scratch + (size_t)(1u - model->row % 2u) * width;
-    uint8_t *const errors = model->scratch + 2u * (size_t)width;
-    for (unsigned x = 0; x < width; x++) {
+    uint8_t *const errors = tsr_gray_row_errors(model);
+    for (; x < end; x++) {
         struct around a;
         look_around(&a, here, up, errors, x, width);
         if (tsr_port_spent_bits(port) > model->allowed_bits) {
@@ -123,5 +123,10 @@ void tsr_gray_code_row(struct tsr_gray_model *model, const struct tsr_range_port
         errors[x] = (uint8_t)difference(here[x], a.predicted);
         model->allowed_bits += 8u;
     }
+}
+
+void tsr_gray_code_row(struct tsr_gray_model *model, const struct tsr_range_port *port)
+{
+    tsr_gray_code_span(model, port, 0, model->info.width);
     model->row++;
 }

@@ -61,6 +61,43 @@ enum tsr_status tsr_packet_read_header(const uint8_t *bytes, size_t len, const s
     return TSR_OK;
 }
 
+enum tsr_status tsr_packet_source_start(struct tsr_packet_source *source, const uint8_t *pixels, size_t stride,
+                                        uint16_t width, uint16_t height, uint8_t id)
+{
+    if (id > TSR_PACKET_ID_MAX) {
+        return TSR_ERR_ARG;
+    }
+    if (stride < width) {
+        return TSR_ERR_SIZE;
+    }
+    *source = (struct tsr_packet_source){pixels, stride, width, height, id, 0};
+    return TSR_OK;
+}
+
+enum tsr_status tsr_packet_check_next(const struct tsr_packet_source *source, const struct tsr_packet_grid *grid,
+                                      size_t out_cap)
+{
+    if (out_cap < TSR_PACKET_LEN_MIN) {
+        return TSR_ERR_NOBUF;
+    }
+    return source->position < tsr_packet_units(grid) ? TSR_OK : TSR_ERR_SIZE;
+}
+
+enum tsr_status tsr_packet_finish(struct tsr_packet_source *source, const struct tsr_packet_grid *grid,
+                                  struct tsr_range_encoder *range, unsigned version, const struct tsr_packet *packet,
+                                  uint8_t *out, size_t *len)
+{
+    size_t payload_len = 0;
+    const enum tsr_status status = tsr_range_encode_finish(range, &payload_len);
+    if (status != TSR_OK) {
+        return status;
+    }
+    tsr_packet_write_header(out, grid, version, packet);
+    source->position += packet->count;
+    *len = TSR_PACKET_HEADER_LEN + payload_len;
+    return source->position < tsr_packet_units(grid) ? TSR_AGAIN : TSR_OK;
+}
+
 /* Would the stream end within its buffer? */
 static bool would_fit(struct tsr_range_encoder range)
 {

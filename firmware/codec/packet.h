@@ -1,5 +1,5 @@
 /*
- * Mechanics of packets, docs/codec.md, 2a.1 and 2a.3: the header, where units
+ * Mechanics of packets, docs/codec.md, 2a.1, 3a.1 and 5a.1: the header, where units
  * lie, and filling a packet with as many groups of units as fit.
  *
  * SPDX-License-Identifier: Apache-2.0
@@ -43,6 +43,21 @@ void tsr_packet_write_header(uint8_t out[TSR_PACKET_HEADER_LEN], const struct ts
  */
 enum tsr_status tsr_packet_read_header(const uint8_t *bytes, size_t len, const struct tsr_packet_grid *grid,
                                        unsigned version, unsigned id, struct tsr_packet *packet);
+
+/* TSR_ERR_ARG for an id out of range, TSR_ERR_SIZE for a stride < width; pointers and sizes are checked by the caller.
+ */
+enum tsr_status tsr_packet_source_start(struct tsr_packet_source *source, const uint8_t *pixels, size_t stride,
+                                        uint16_t width, uint16_t height, uint8_t id);
+
+/* May a packet of out_cap bytes follow? TSR_ERR_NOBUF if they are too few, TSR_ERR_SIZE after the last packet. */
+enum tsr_status tsr_packet_check_next(const struct tsr_packet_source *source, const struct tsr_packet_grid *grid,
+                                      size_t out_cap);
+
+/* End the stream that begins after the header of out, write the header and go on to the next packet: TSR_AGAIN, TSR_OK
+ * with the last one. *len only then. */
+enum tsr_status tsr_packet_finish(struct tsr_packet_source *source, const struct tsr_packet_grid *grid,
+                                  struct tsr_range_encoder *range, unsigned version, const struct tsr_packet *packet,
+                                  uint8_t *out, size_t *len);
 
 /* Codes count units after the first `done` of a packet; false if a unit cannot be coded at all. */
 typedef bool tsr_packet_code_units(void *codec, struct tsr_range_encoder *range, uint32_t done, uint32_t count);

@@ -24,7 +24,7 @@ _Static_assert(TSR_PICTURE_SLACK_LEN + 1u + 1516u + 4u + 64u + TSR_RANGE_FINISH_
 
 static bool is_valid_info(const struct tsr_picture_info *info)
 {
-    return tsr_frame_is_valid_size(info->width, info->height) && info->step <= TSR_PICTURE_STEP_MAX &&
+    return tsr_codec_frame_is_valid_size(info->width, info->height) && info->step <= TSR_PICTURE_STEP_MAX &&
            info->prior <= TSR_PICTURE_PRIOR_TRAINED;
 }
 
@@ -53,10 +53,11 @@ enum tsr_status tsr_picture_encode_start(struct tsr_picture_encoder *encoder, co
     if (out_cap < TSR_PICTURE_HEADER_LEN || scratch_cap < TSR_PICTURE_SCRATCH_LEN(info->width)) {
         return TSR_ERR_NOBUF;
     }
-    tsr_frame_write_header(out, &(struct tsr_frame_header){.version_mode = TSR_PICTURE_FORMAT_VERSION,
-                                                           .options = (uint8_t)(info->prior << 6 | info->step),
-                                                           .width = info->width,
-                                                           .height = info->height});
+    tsr_codec_frame_write_header(out,
+                                 &(struct tsr_codec_frame_header){.version_mode = TSR_PICTURE_FORMAT_VERSION,
+                                                                  .options = (uint8_t)(info->prior << 6 | info->step),
+                                                                  .width = info->width,
+                                                                  .height = info->height});
     start_model(&encoder->model, info, scratch);
     tsr_range_encode_start(&encoder->range, out + TSR_PICTURE_HEADER_LEN, out_cap - TSR_PICTURE_HEADER_LEN);
     encoder->target_len = target_len;
@@ -113,12 +114,6 @@ static void extend(const struct tsr_picture_rows *rows, unsigned width, unsigned
     }
 }
 
-/* The last two rows of the band become those above the next. */
-static void keep_last_rows(const struct tsr_picture_rows *rows)
-{
-    memcpy(rows->pixels, rows->pixels + TSR_PICTURE_BLOCK * rows->stride, 2u * rows->stride);
-}
-
 static void encode_band(struct tsr_picture_encoder *encoder, const struct tsr_picture_rows *rows, unsigned row_count)
 {
     const struct tsr_range_port port = {.encoder = &encoder->range};
@@ -128,7 +123,7 @@ static void encode_band(struct tsr_picture_encoder *encoder, const struct tsr_pi
     tsr_picture_code_band(&encoder->model, &port, change);
     const uint32_t len = (uint32_t)encoder->range.at - encoder->band_start_len;
     encoder->band_len = encoder->model.band == 1u ? len : (encoder->band_len + len + 1u) / 2u;
-    keep_last_rows(rows);
+    tsr_picture_keep_last_rows(rows);
 }
 
 enum tsr_status tsr_picture_encode_rows(struct tsr_picture_encoder *encoder, const uint8_t *rows, size_t stride,
@@ -139,12 +134,12 @@ enum tsr_status tsr_picture_encode_rows(struct tsr_picture_encoder *encoder, con
     }
     struct tsr_picture_model *const model = &encoder->model;
     const enum tsr_status status =
-        tsr_frame_check_rows(&encoder->range, model->info.width, rows_left(model), stride, row_count);
+        tsr_codec_frame_check_rows(&encoder->range, model->info.width, rows_left(model), stride, row_count);
     if (status != TSR_OK) {
         return status;
     }
     const struct tsr_picture_rows band = tsr_picture_rows_of(model);
-    for (uint16_t y = 0; y < row_count && !tsr_frame_is_lost(&encoder->range); y++) {
+    for (uint16_t y = 0; y < row_count && !tsr_codec_frame_is_lost(&encoder->range); y++) {
         const unsigned in_band = model->row % TSR_PICTURE_BLOCK;
         memcpy(band.pixels + (2u + in_band) * band.stride, rows + y * stride, model->info.width);
         model->row++;
@@ -152,7 +147,7 @@ enum tsr_status tsr_picture_encode_rows(struct tsr_picture_encoder *encoder, con
             encode_band(encoder, &band, in_band + 1u);
         }
     }
-    return tsr_frame_progress(&encoder->range, rows_left(model));
+    return tsr_codec_frame_progress(&encoder->range, rows_left(model));
 }
 
 enum tsr_status tsr_picture_encode_finish(struct tsr_picture_encoder *encoder, size_t *len)
@@ -160,7 +155,7 @@ enum tsr_status tsr_picture_encode_finish(struct tsr_picture_encoder *encoder, s
     if (encoder == NULL || len == NULL) {
         return TSR_ERR_ARG;
     }
-    return tsr_frame_finish(&encoder->range, rows_left(&encoder->model), TSR_PICTURE_HEADER_LEN, len);
+    return tsr_codec_frame_finish(&encoder->range, rows_left(&encoder->model), TSR_PICTURE_HEADER_LEN, len);
 }
 
 enum tsr_status tsr_picture_read_info(const uint8_t *bytes, size_t len, struct tsr_picture_info *info)
@@ -168,8 +163,8 @@ enum tsr_status tsr_picture_read_info(const uint8_t *bytes, size_t len, struct t
     if (bytes == NULL || info == NULL) {
         return TSR_ERR_ARG;
     }
-    struct tsr_frame_header header;
-    if (!tsr_frame_read_header(bytes, len, &header)) {
+    struct tsr_codec_frame_header header;
+    if (!tsr_codec_frame_read_header(bytes, len, &header)) {
         return TSR_ERR_FORMAT;
     }
     if (header.version_mode != TSR_PICTURE_FORMAT_VERSION || header.options >> 6 > TSR_PICTURE_PRIOR_TRAINED) {
@@ -219,7 +214,8 @@ enum tsr_status tsr_picture_decode_rows(struct tsr_picture_decoder *decoder, uin
         return TSR_ERR_ARG;
     }
     struct tsr_picture_model *const model = &decoder->model;
-    const enum tsr_status status = tsr_frame_check_rows(NULL, model->info.width, rows_left(model), stride, row_count);
+    const enum tsr_status status =
+        tsr_codec_frame_check_rows(NULL, model->info.width, rows_left(model), stride, row_count);
     if (status != TSR_OK) {
         return status;
     }
@@ -227,10 +223,10 @@ enum tsr_status tsr_picture_decode_rows(struct tsr_picture_decoder *decoder, uin
     const struct tsr_picture_rows band = tsr_picture_rows_of(model);
     for (uint16_t y = 0; y < row_count; y++, model->row++) {
         while (needs_band(model)) {
-            keep_last_rows(&band);
+            tsr_picture_keep_last_rows(&band);
             tsr_picture_code_band(model, &port, 0);
         }
         tsr_picture_smooth_row(model, model->row, rows + y * stride);
     }
-    return tsr_frame_progress(NULL, rows_left(model));
+    return tsr_codec_frame_progress(NULL, rows_left(model));
 }

@@ -35,7 +35,7 @@ static const uint8_t places[TSR_PICTURE_COEFFICIENTS] = {
     0,  1, 4, 9, 9, 9, 9, 9, 2,  3, 6, 7, 7, 8, 8, 8, 5,  6, 7, 7, 8, 8, 8, 8, 10, 7, 7, 8, 8, 8, 8, 8,
     10, 7, 8, 8, 8, 8, 8, 8, 10, 8, 8, 8, 8, 8, 8, 8, 10, 8, 8, 8, 8, 8, 8, 8, 10, 8, 8, 8, 8, 8, 8, 8};
 
-/* What is known of the blocks on the left and above; outside the picture each is as the other. */
+/* What is known of the blocks on the left and above; an unknown one is as the other. */
 struct around {
     unsigned mode_context;
     unsigned last_class; /* rounded mean of both, 0..11 */
@@ -55,6 +55,11 @@ struct tsr_picture_rows tsr_picture_rows_of(const struct tsr_picture_model *mode
                                      .activities = after + 2u * blocks,
                                      .limits = after + (3u + odd) * blocks,
                                      .limits_above = after + (4u - odd) * blocks};
+}
+
+void tsr_picture_keep_last_rows(const struct tsr_picture_rows *rows)
+{
+    memcpy(rows->pixels, rows->pixels + TSR_PICTURE_BLOCK * rows->stride, 2u * rows->stride);
 }
 
 void tsr_picture_model_reset(struct tsr_picture_model *model)
@@ -80,13 +85,12 @@ static unsigned class_of_last(unsigned last)
     return class;
 }
 
-static struct around look_around(const struct tsr_picture_model *model, const struct tsr_picture_rows *rows, size_t x)
+static struct around look_around(const struct tsr_picture_rows *rows, size_t x, struct tsr_picture_known known)
 {
     struct around a = {.mode_context = 0, .last_class = 5, .activity = 2};
-    const bool has_left = x > 0, has_above = model->band > 0;
-    if (has_left || has_above) {
-        const size_t left = has_left ? x - 1u : x, above = has_above ? x : x - 1u;
-        a.mode_context = (has_left ? 4u * rows->modes[left] : 0u) + (has_above ? rows->modes[above] : 0u);
+    if (known.left || known.above) {
+        const size_t left = known.left ? x - 1u : x, above = known.above ? x : x - 1u;
+        a.mode_context = (known.left ? 4u * rows->modes[left] : 0u) + (known.above ? rows->modes[above] : 0u);
         a.last_class = (class_of_last(rows->lasts[left]) + class_of_last(rows->lasts[above]) + 1u) / 2u;
         a.activity = ((unsigned)rows->activities[left] + rows->activities[above] + 1u) / 2u;
     }
@@ -186,8 +190,8 @@ static void code_levels(struct tsr_picture_model *model, const struct tsr_range_
     }
 }
 
-static void take_border(struct tsr_picture_border *border, const struct tsr_picture_model *model,
-                        const struct tsr_picture_rows *rows, size_t x)
+static void take_border(struct tsr_picture_border *border, const struct tsr_picture_rows *rows, size_t x,
+                        struct tsr_picture_known known)
 {
     static const uint8_t nothing[TSR_PICTURE_BLOCK] = {ABOVE_FIRST_ROW, ABOVE_FIRST_ROW, ABOVE_FIRST_ROW,
                                                        ABOVE_FIRST_ROW, ABOVE_FIRST_ROW, ABOVE_FIRST_ROW,
@@ -196,14 +200,14 @@ static void take_border(struct tsr_picture_border *border, const struct tsr_pict
     const uint8_t *above = band - rows->stride, *left = band - 1;
     size_t left_stride = rows->stride;
     uint8_t same[TSR_PICTURE_BLOCK];
-    if (model->band == 0 && x == 0) {
+    if (!known.above && !known.left) {
         above = nothing;
         left = nothing;
         left_stride = 1;
-    } else if (model->band == 0) {
+    } else if (!known.above) {
         memset(same, left[0], sizeof same);
         above = same;
-    } else if (x == 0) {
+    } else if (!known.left) {
         memset(same, above[0], sizeof same);
         left = same;
         left_stride = 1;
@@ -211,14 +215,14 @@ static void take_border(struct tsr_picture_border *border, const struct tsr_pict
     tsr_picture_border_of(border, above, left, left_stride);
 }
 
-static void code_block(struct tsr_picture_model *model, const struct tsr_range_port *port,
-                       const struct tsr_picture_rows *rows, size_t x)
+void tsr_picture_code_block(struct tsr_picture_model *model, const struct tsr_range_port *port,
+                            const struct tsr_picture_rows *rows, size_t x, struct tsr_picture_known known)
 {
-    const struct around a = look_around(model, rows, x);
+    const struct around a = look_around(rows, x, known);
     uint8_t *const pixels = rows->pixels + 2u * rows->stride + TSR_PICTURE_BLOCK * x;
     struct tsr_picture_border border;
     struct tsr_picture_block block = {.mode = TSR_PICTURE_MEAN, .last = 0};
-    take_border(&border, model, rows, x);
+    take_border(&border, rows, x, known);
     const bool predicted_only = tsr_port_spent_bits(port) > model->allowed_bits;
     model->allowed_bits += 8u * TSR_PICTURE_COEFFICIENTS;
     if (!predicted_only) {
@@ -238,7 +242,7 @@ static void code_block(struct tsr_picture_model *model, const struct tsr_range_p
     }
     const uint32_t step_q6 = tsr_picture_step_q6(model->step + 4u * block.activity);
     tsr_picture_reconstruct(&block, &border, step_q6, pixels, rows->stride);
-    rows->limits[x] = (uint8_t)((step_q6 + 128u) >> 8); /* a quarter of the step, at most 234 */
+    rows->limits[x] = tsr_picture_limit_of(step_q6);
     rows->modes[x] = block.mode;
     rows->lasts[x] = block.last;
     rows->activities[x] = block.activity;
@@ -261,7 +265,7 @@ void tsr_picture_code_band(struct tsr_picture_model *model, const struct tsr_ran
     const int step = model->step + code_change(model, port, change);
     model->step = (uint8_t)(step < 0 ? 0 : step > TSR_PICTURE_STEP_MAX ? TSR_PICTURE_STEP_MAX : step);
     for (size_t x = 0; x < rows.blocks; x++) {
-        code_block(model, port, &rows, x);
+        tsr_picture_code_block(model, port, &rows, x, (struct tsr_picture_known){x > 0, model->band > 0});
     }
     model->band++;
 }

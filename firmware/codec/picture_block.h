@@ -41,8 +41,39 @@ struct tsr_picture_rows tsr_picture_rows_of(const struct tsr_picture_model *mode
 /* Forget everything; scratch and info are set by the caller. */
 void tsr_picture_model_reset(struct tsr_picture_model *model);
 
+/* Which neighbours of a block there are to learn from. */
+struct tsr_picture_known {
+    bool left, above;
+};
+
+/* Code block x of the band in rows 2..9. */
+void tsr_picture_code_block(struct tsr_picture_model *model, const struct tsr_range_port *port,
+                            const struct tsr_picture_rows *rows, size_t x, struct tsr_picture_known known);
+
+/* The last two rows of the band become those above the next. */
+void tsr_picture_keep_last_rows(const struct tsr_picture_rows *rows);
+
 /* Code the band in rows 2..9, whose step differs by change from the band's above, and step to the next. */
 void tsr_picture_code_band(struct tsr_picture_model *model, const struct tsr_range_port *port, int change);
+
+/* How far a neighbour may pull at a pixel, in 1/8 gray level: a quarter of the step, 0 .. 234. */
+static inline uint8_t tsr_picture_limit_of(uint32_t step_q6)
+{
+    return (uint8_t)((step_q6 + 128u) >> 8);
+}
+
+/* A row of one block, and what pulls at it. */
+struct tsr_picture_line {
+    const uint8_t *here;
+    const uint8_t *above, *below; /* the row itself where there is none */
+    bool has_left, has_right;     /* pixels beside it */
+    uint8_t limit;                /* of the block */
+    uint8_t y;                    /* within it, 0 .. 7 */
+    uint8_t count;                /* pixels, 1 .. 8 */
+};
+
+/* Decoder: smooth them into out[count]. */
+void tsr_picture_smooth_line(const struct tsr_picture_line *line, uint8_t *out);
 
 /* Decoder: smooth row y, which and whose neighbours are in the scratch, into out[width]. */
 void tsr_picture_smooth_row(const struct tsr_picture_model *model, unsigned y, uint8_t *out);

@@ -15,7 +15,7 @@
 #include "tsr/base/bytes.h"
 #include "view_row.h"
 
-#define HEADER_LEN TSR_FRAME_HEADER_LEN
+#define HEADER_LEN TSR_CODEC_FRAME_HEADER_LEN
 #define CHECK_LEN 2u
 #define MODE_AGAINST_HELD 1u
 #define COARSE_BIT 0x08u
@@ -28,8 +28,8 @@ _Static_assert(TSR_VIEW_SLACK_LEN + 1u + 21u + 1u + TSR_RANGE_FINISH_LEN_MAX <= 
 
 static bool is_valid_info(const struct tsr_view_info *info)
 {
-    return tsr_frame_is_valid_size(info->width, info->height) && info->cap >= 1 && info->cap <= TSR_VIEW_CAP_MAX &&
-           (!info->coarse || info->cap == TSR_VIEW_CAP_MAX);
+    return tsr_codec_frame_is_valid_size(info->width, info->height) && info->cap >= 1 &&
+           info->cap <= TSR_VIEW_CAP_MAX && (!info->coarse || info->cap == TSR_VIEW_CAP_MAX);
 }
 
 size_t tsr_view_encoded_len_max(const struct tsr_view_info *info)
@@ -86,12 +86,12 @@ enum tsr_status tsr_view_encode_start(struct tsr_view_encoder *encoder, const st
     if (out_cap < TSR_VIEW_HEADER_LEN_MAX || scratch_cap < TSR_VIEW_SCRATCH_LEN(info->width)) {
         return TSR_ERR_NOBUF;
     }
-    const struct tsr_frame_header header = {
+    const struct tsr_codec_frame_header header = {
         .version_mode = (uint8_t)(TSR_VIEW_FORMAT_VERSION | (info->against_held ? MODE_AGAINST_HELD << 4 : 0u)),
         .options = (uint8_t)(info->cap | (info->coarse ? COARSE_BIT | PRIOR_OF_COARSE << 4 : 0u)),
         .width = info->width,
         .height = info->height};
-    tsr_frame_write_header(out, &header);
+    tsr_codec_frame_write_header(out, &header);
     if (info->against_held) {
         struct tsr_writer writer = tsr_writer_make(out + HEADER_LEN, CHECK_LEN);
         tsr_write_u16(&writer, held->check);
@@ -111,7 +111,7 @@ static unsigned rows_left(const struct tsr_view_model *model)
 /* After the rows of a call: with the last one the held view is this one. */
 static enum tsr_status progress(struct tsr_view_model *model, const struct tsr_range_encoder *range)
 {
-    const enum tsr_status status = tsr_frame_progress(range, rows_left(model));
+    const enum tsr_status status = tsr_codec_frame_progress(range, rows_left(model));
     if (status == TSR_OK && model->held != NULL) {
         model->held->info = model->info;
         model->held->check = model->check;
@@ -128,13 +128,13 @@ enum tsr_status tsr_view_encode_rows(struct tsr_view_encoder *encoder, const uin
     }
     struct tsr_view_model *model = &encoder->model;
     const enum tsr_status status =
-        tsr_frame_check_rows(&encoder->range, model->info.width, rows_left(model), stride, row_count);
+        tsr_codec_frame_check_rows(&encoder->range, model->info.width, rows_left(model), stride, row_count);
     if (status != TSR_OK) {
         return status;
     }
     const struct tsr_range_port port = {.encoder = &encoder->range};
     const size_t across = TSR_VIEW_TILES_ACROSS(model->info.width);
-    for (uint16_t y = 0; y < row_count && !tsr_frame_is_lost(&encoder->range); y++) {
+    for (uint16_t y = 0; y < row_count && !tsr_codec_frame_is_lost(&encoder->range); y++) {
         const uint8_t *tiles = encoder->tiles;
         tiles = tiles != NULL ? tiles + across * (model->row / TSR_VIEW_TILE_PX) : NULL;
         tsr_view_code_row(model, &port, NULL, rows + y * stride, tiles);
@@ -149,7 +149,7 @@ enum tsr_status tsr_view_encode_finish(struct tsr_view_encoder *encoder, size_t 
     }
     struct tsr_view_model *model = &encoder->model;
     const enum tsr_status status =
-        tsr_frame_finish(&encoder->range, rows_left(model), header_len_of(&model->info), len);
+        tsr_codec_frame_finish(&encoder->range, rows_left(model), header_len_of(&model->info), len);
     if (status == TSR_ERR_NOBUF && model->held != NULL) {
         model->held->full = false;
     }
@@ -160,8 +160,8 @@ enum tsr_status tsr_view_encode_finish(struct tsr_view_encoder *encoder, size_t 
 static __attribute__((noinline)) enum tsr_status read_header(const uint8_t *bytes, size_t len,
                                                              struct tsr_view_info *info, uint16_t *check)
 {
-    struct tsr_frame_header header;
-    if (!tsr_frame_read_header(bytes, len, &header)) {
+    struct tsr_codec_frame_header header;
+    if (!tsr_codec_frame_read_header(bytes, len, &header)) {
         return TSR_ERR_FORMAT;
     }
     const unsigned mode = header.version_mode >> 4;
@@ -224,7 +224,8 @@ enum tsr_status tsr_view_decode_rows(struct tsr_view_decoder *decoder, uint8_t *
         return TSR_ERR_ARG;
     }
     struct tsr_view_model *model = &decoder->model;
-    const enum tsr_status status = tsr_frame_check_rows(NULL, model->info.width, rows_left(model), stride, row_count);
+    const enum tsr_status status =
+        tsr_codec_frame_check_rows(NULL, model->info.width, rows_left(model), stride, row_count);
     if (status != TSR_OK) {
         return status;
     }

@@ -19,6 +19,7 @@
 
 #include <string.h>
 
+#include "frame.h"
 #include "tsr/base/crc.h"
 
 #define IN_FRONT 2u
@@ -31,12 +32,11 @@
 #define DISTANCES 3u
 #define LITERAL_BITS 4u
 #define WEIGHTS 15 /* of all neighbours together */
-#define TILE_BITS_ALLOWED 12u
 
 /* Where each question's contexts begin. */
 #define LEVELS_AT 0u
 #define TILES_AT (LEVELS_AT + (TSR_VIEW_CAP_MAX + 1u) * ACTIVITY_COUNT * NODES)
-#define CONTEXTS_END (TILES_AT + 8u)
+#define CONTEXTS_END (TILES_AT + TSR_CODEC_FRAME_TILE_CONTEXTS)
 _Static_assert(CONTEXTS_END == TSR_VIEW_CONTEXT_COUNT, "the public header sizes the model");
 
 static const uint8_t exactly[TSR_VIEW_CAP_MAX + 1] = {0, 1, 2, 3, 4, 5, 6, 7};
@@ -46,11 +46,16 @@ static const uint8_t coarse_value_of[TSR_VIEW_CAP_MAX + 1] = {0, 1, 2, 4, 7};
 static const uint8_t class_of_activity[ACTIVITY_END] = {0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 2, 3, 3,
                                                         3, 3, 3, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4};
 
-void tsr_view_model_reset(struct tsr_view_model *model)
+void tsr_view_clear_rows(struct tsr_view_model *model)
 {
     const size_t rows_len = ROWS * ((size_t)model->info.width + BORDERS);
     memset(model->scratch, model->info.cap, rows_len);
     memset(model->scratch + rows_len, 0, TSR_VIEW_SCRATCH_LEN(model->info.width) - rows_len);
+}
+
+void tsr_view_model_reset(struct tsr_view_model *model)
+{
+    tsr_view_clear_rows(model);
     model->level_of = model->info.coarse ? coarse_level_of : exactly;
     model->value_of = model->info.coarse ? coarse_value_of : exactly;
     model->level_max = model->level_of[model->info.cap];
@@ -69,17 +74,25 @@ static uint8_t *row_of(const struct tsr_view_model *model, unsigned row)
     return model->scratch + (size_t)(row % ROWS) * (model->info.width + BORDERS) + IN_FRONT;
 }
 
-/* One bit a tile in contexts of its neighbours. Flags keep those of the row of tiles above until they are passed. */
-static void code_tiles(struct tsr_view_model *model, const struct tsr_range_port *port, uint8_t *flags,
-                       const uint8_t *tiles)
+uint8_t *tsr_view_row_pixels(const struct tsr_view_model *model)
 {
-    const unsigned count = (unsigned)TSR_VIEW_TILES_ACROSS(model->info.width);
-    for (unsigned i = 0; i < count; i++) {
-        const unsigned around = flags[i] + 2u * flags[i + 1] + 4u * flags[i + 2];
-        flags[i + 1] =
-            tsr_port_bit(port, &model->contexts[TILES_AT + around], tiles != NULL && tiles[i] != 0) ? 1u : 0u;
-    }
-    model->allowed_bits += TILE_BITS_ALLOWED * count;
+    return row_of(model, model->row);
+}
+
+static uint8_t *errors_of(const struct tsr_view_model *model)
+{
+    return model->scratch + ROWS * (size_t)(model->info.width + BORDERS) + IN_FRONT;
+}
+
+/* What lies left and right of the row. */
+static void open_row(const struct tsr_view_model *model, uint8_t *here)
+{
+    here[-1] = here[-2] = row_of(model, model->row + 2u)[0];
+}
+
+static void close_row(const struct tsr_view_model *model, uint8_t *here)
+{
+    here[model->info.width] = here[model->info.width - 1u];
 }
 
 /* The level, given the one that is expected. */
@@ -163,6 +176,18 @@ static void code_run(struct tsr_view_model *model, const struct tsr_range_port *
     }
 }
 
+void tsr_view_code_span(struct tsr_view_model *model, const struct tsr_range_port *port, unsigned x, unsigned end)
+{
+    uint8_t *here = tsr_view_row_pixels(model);
+    if (x == 0) {
+        open_row(model, here);
+    }
+    code_run(model, port, here, errors_of(model), x, end);
+    if (end == model->info.width) {
+        close_row(model, here);
+    }
+}
+
 static uint8_t *held_row(const struct tsr_view_model *model)
 {
     return model->held->packed + ((size_t)model->info.width + 1u) / 2u * model->row;
@@ -198,17 +223,18 @@ void tsr_view_code_row(struct tsr_view_model *model, const struct tsr_range_port
     const unsigned width = model->info.width;
     const uint8_t max = (uint8_t)(2u * model->info.cap);
     uint8_t *here = row_of(model, model->row);
-    uint8_t *errors = model->scratch + ROWS * (size_t)(width + BORDERS) + IN_FRONT;
+    uint8_t *errors = errors_of(model);
     uint8_t *flags = errors + width + 1u;
     for (unsigned x = 0; in != NULL && x < width; x++) {
         here[x] = in[x] < max ? in[x] : max;
     }
-    here[-1] = here[-2] = row_of(model, model->row + 2u)[0];
+    open_row(model, here);
     if (!model->info.against_held) {
         code_run(model, port, here, errors, 0, width);
     } else {
         if (model->row % TSR_VIEW_TILE_PX == 0) {
-            code_tiles(model, port, flags, tiles);
+            const unsigned count = (unsigned)TSR_VIEW_TILES_ACROSS(width);
+            model->allowed_bits += tsr_codec_frame_code_tiles(port, &model->contexts[TILES_AT], flags, tiles, count);
         }
         for (unsigned x = 0; x < width; x += TSR_VIEW_TILE_PX) {
             const unsigned end = x + TSR_VIEW_TILE_PX < width ? x + TSR_VIEW_TILE_PX : width;
@@ -219,7 +245,7 @@ void tsr_view_code_row(struct tsr_view_model *model, const struct tsr_range_port
             }
         }
     }
-    here[width] = here[width - 1u];
+    close_row(model, here);
     if (model->held != NULL) {
         hold_row(model, here);
     }

@@ -15,8 +15,20 @@
 /* The trained start of the contexts, of coarse views. */
 extern const uint16_t tsr_view_prior[TSR_VIEW_CONTEXT_COUNT];
 
+/* The same of views in packets, exact and coarse. */
+extern const uint16_t tsr_view_packet_prior[2][TSR_VIEW_CONTEXT_COUNT];
+
 /* Forget everything; info, held and scratch are set by the caller. */
 void tsr_view_model_reset(struct tsr_view_model *model);
+
+/* Enter a strip of model->info.width columns: nothing is known of it. */
+void tsr_view_clear_rows(struct tsr_view_model *model);
+
+/* Pixels of row model->row, 0 .. 2 cap. */
+uint8_t *tsr_view_row_pixels(const struct tsr_view_model *model);
+
+/* Code columns x .. end - 1 of the row, which the encoder has filled. */
+void tsr_view_code_span(struct tsr_view_model *model, const struct tsr_range_port *port, unsigned x, unsigned end);
 
 /*
  * Code the next row: from pixels, which the encoder has filled, or into them.

@@ -23,6 +23,12 @@
 #define LLVMFuzzerTestOneInput fuzz_picture_one_input
 #include "fuzz_codec_picture.c"
 #undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_image_packet_one_input
+#include "fuzz_codec_image_packet.c"
+#undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_gray_history_one_input
+#include "fuzz_codec_gray_history.c"
+#undef LLVMFuzzerTestOneInput
 
 #include "corpus_replay.h"
 
@@ -51,6 +57,14 @@ static void test_picture_corpus(void)
 {
     corpus_replay(fuzz_picture_one_input, "corpus_codec_picture", MUTATIONS);
 }
+static void test_image_packet_corpus(void)
+{
+    corpus_replay(fuzz_image_packet_one_input, "corpus_codec_image_packet", MUTATIONS);
+}
+static void test_gray_history_corpus(void)
+{
+    corpus_replay(fuzz_gray_history_one_input, "corpus_codec_gray_history", MUTATIONS);
+}
 
 int main(int argc, char **argv)
 {
@@ -61,5 +75,7 @@ int main(int argc, char **argv)
     RUN_TEST(test_gray_corpus);
     RUN_TEST(test_view_corpus);
     RUN_TEST(test_picture_corpus);
+    RUN_TEST(test_image_packet_corpus);
+    RUN_TEST(test_gray_history_corpus);
     return UNITY_END();
 }

@@ -9,7 +9,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "codec_content.h"
 #include "codec_random.h"
+#include "codec_seed.h"
 #include "tsr/codec/gray.h"
 #include "unity.h"
 
@@ -24,42 +26,8 @@ static uint8_t out[TSR_GRAY_ENCODED_LEN_MAX(WIDTH_MAX, HEIGHT_MAX)];
 static uint8_t out_of_chunks[sizeof out];
 static struct tsr_gray_encoder encoder;
 static struct tsr_gray_decoder decoder;
-static const char *program;
-static uint64_t seed;
 
-void setUp(void)
-{
-    seed = 0;
-}
-
-void tearDown(void)
-{
-    if (Unity.CurrentTestFailed && seed != 0) {
-        printf("failed; replay: SEED=%llu RUNS=1 %s\n", (unsigned long long)seed, program);
-    }
-}
-
-enum content {
-    CONTENT_FLAT,
-    CONTENT_CHECKER,
-    CONTENT_NOISE,
-    CONTENT_SLOPE,
-    CONTENT_BLOCKS,
-    CONTENT_EXTREMES,
-    CONTENT_COUNT
-};
-
-static uint8_t pick(struct codec_random *random, enum content content, unsigned x, unsigned y)
-{
-    switch (content) {
-    case CONTENT_FLAT: return 77;
-    case CONTENT_CHECKER: return (x + y) % 2 == 0 ? 0 : 255;
-    case CONTENT_NOISE: return (uint8_t)codec_random_next(random);
-    case CONTENT_SLOPE: return (uint8_t)(x + 2 * y + codec_random_below(random, 6));
-    case CONTENT_BLOCKS: return (uint8_t)((x / 9) * 70 + (y / 5) * 110 + codec_random_below(random, 3));
-    default: return codec_random_below(random, 2) == 0 ? 0 : 255;
-    }
-}
+void setUp(void) {}
 
 static void draw(struct codec_random *random, const struct tsr_gray_info *info, enum content content, size_t stride)
 {
@@ -134,12 +102,7 @@ static void check_seed(void)
 
 static void test_round_trip_of_random_images(void)
 {
-    const uint64_t first = codec_setting("SEED", 1);
-    const uint64_t end = first + codec_setting("RUNS", 1500);
-    printf("replay all: SEED=%llu %s\n", (unsigned long long)first, program);
-    for (seed = first; seed < end; seed++) {
-        check_seed();
-    }
+    check_seeds(1500, check_seed);
 }
 
 static void test_round_trip_of_small_shapes(void)

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "codec_random.h"
+#include "codec_seed.h"
 #include "tsr/codec/view.h"
 #include "unity.h"
 
@@ -29,21 +30,11 @@ static uint8_t packed[3][TSR_VIEW_HELD_LEN(WIDTH_MAX, HEIGHT_MAX)];
 static struct tsr_view_held held[3]; /* of two encoders and the decoder */
 static struct tsr_view_encoder encoder;
 static struct tsr_view_decoder decoder;
-static const char *program;
-static uint64_t seed;
 
 void setUp(void)
 {
-    seed = 0;
     for (unsigned i = 0; i < 3; i++) {
         held[i] = (struct tsr_view_held){.packed = packed[i], .packed_cap = sizeof packed[i]};
-    }
-}
-
-void tearDown(void)
-{
-    if (Unity.CurrentTestFailed && seed != 0) {
-        printf("failed; replay: SEED=%llu RUNS=1 %s\n", (unsigned long long)seed, program);
     }
 }
 
@@ -172,12 +163,7 @@ static void check_seed(void)
 
 static void test_sequences_of_random_views(void)
 {
-    const uint64_t first = codec_setting("SEED", 1);
-    const uint64_t end = first + codec_setting("RUNS", 1000);
-    printf("replay all: SEED=%llu %s\n", (unsigned long long)first, program);
-    for (seed = first; seed < end; seed++) {
-        check_seed();
-    }
+    check_seeds(1000, check_seed);
 }
 
 static void test_small_shapes(void)

@@ -1,6 +1,6 @@
 """From what a codec's contexts are asked to the prior with which that costs the fewest bits.
 
-For picture_prior.py and view_prior.py. Needs a C compiler and NumPy.
+For picture_prior.py, view_prior.py and packet_prior.py. Needs a C compiler and NumPy.
 
 SPDX-License-Identifier: Apache-2.0
 """
@@ -19,16 +19,18 @@ BITS_MAX = 1 << 22
 
 
 def build(folder, traced, plain, trace):
-    """A library: the traced sources with their questions recorded, those that record them, and plain ones."""
+    """A library: the traced sources and what they share with their questions recorded, trace, and plain ones."""
     includes = [f"-I{TRAIN}", *(f"-I{ROOT}/firmware/{layer}/include" for layer in LAYERS)]
     compile_one = ["cc", "-O2", "-fPIC", "-std=c11", *includes, "-c"]
-    for source in (*traced, CODEC / "range_port.c"):
+    shared = (CODEC / "range_port.c", CODEC / "frame.c", *CODEC.glob("packet*.c"))
+    for source in (*traced, *shared):
         subprocess.run([*compile_one, "-Dtsr_range_encode_bit=prior_trace_bit", source], cwd=folder, check=True)
     for source in (*plain, CODEC / "range.c", *(ROOT / "firmware/base").glob("*.c"), TRAIN / "prior_trace.c", trace):
         subprocess.run([*compile_one, source], cwd=folder, check=True)
     subprocess.run(["cc", "-shared", "-o", "trace.so", *folder.glob("*.o"), "-lm"], cwd=folder, check=True)
     library = ctypes.CDLL(str(folder / "trace.so"))
     library.prior_fit.restype = ctypes.c_uint16
+    library.prior_trace_count.restype = ctypes.c_size_t
     return library
 
 
@@ -62,8 +64,16 @@ def fit(library, asked_of, context_count):
     return prior, total
 
 
-def table(prior, comment, header, name):
-    """C source; name is the array with its size."""
+def rows_of(prior, indent=4):
     rows = [", ".join(f"0x{value:04x}" for value in prior[i:i + 14]) for i in range(0, len(prior), 14)]
+    return (",\n" + " " * indent).join(rows)
+
+
+def source(body, comment, header, name):
+    """C source; name is the array with its size."""
     return (f"/*\n{comment} *\n * SPDX-License-Identifier: Apache-2.0\n */\n#include \"{header}\"\n\n"
-            f"const uint16_t {name} = {{\n    " + ",\n    ".join(rows) + "};\n")
+            f"const uint16_t {name} = {{\n    {body}}};\n")
+
+
+def table(prior, comment, header, name):
+    return source(rows_of(prior), comment, header, name)

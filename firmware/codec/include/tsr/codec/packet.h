@@ -6,11 +6,11 @@
  *   decode   [arrived zeroed]          ─► tsr_<codec>_packet_decode ... ─► tsr_packets_missing
  *
  * Units are pixels of gray images and views, and blocks of 8 x 8 pixels of pictures.
- * They are counted in strips of 32 columns of pixels (the last one may be narrower), a
- * strip from top to bottom, its rows from the left. What all packets of an image
+ * They are counted in strips of 16 columns of pixels, of pictures 32 (the last one may be
+ * narrower), a strip from top to bottom, its rows from the left. What all packets of an image
  * share (its info) travels otherwise: with a site's description, or in a file's
  * header. Messages are authenticated elsewhere; a packet that was cut is not told
- * from another, unless its header is incomplete. Every bit: docs/codec.md, chapter 2a.1.
+ * from another, unless its header is incomplete. Every bit: docs/codec.md, 3a to 5a.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -25,7 +25,9 @@
 /* A header and a group of literal units with the range coder's end always fit. */
 #define TSR_PACKET_LEN_MIN 20
 #define TSR_PACKET_ID_MAX 7
-#define TSR_PACKET_STRIP_PX 32
+/* Columns of a strip, of gray images and views, and of pictures: what measures best (docs/codec.md, 5a.4). */
+#define TSR_PACKET_STRIP_PX 16
+#define TSR_PICTURE_PACKET_STRIP_PX 32
 /* Pixels are sent and marked in groups of so many, but at the end of the image. */
 #define TSR_PACKET_GROUP_PX 8
 
