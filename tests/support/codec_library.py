@@ -13,7 +13,7 @@ SOURCE = pathlib.Path(os.environ.get("TSR_SOURCE", pathlib.Path(__file__).resolv
 OK, AGAIN = 0, 1
 MISSING = 65534
 STATE_LEN = 16384  # more than any coder's state
-PACKET_SCRATCH_COUNT = 3 * (32 + 5)
+PACKET_SCRATCH_COUNT = 3 * (40 + 5)
 U8, U16, I16, SIZE, ANY = ctypes.c_uint8, ctypes.c_uint16, ctypes.c_int16, ctypes.c_size_t, ctypes.c_void_p
 
 

@@ -10,6 +10,7 @@ from vision_library import ANY, LIB, OK, SIZE, U8, U16, pointer
 
 LIB.tsr_quantise.argtypes = [ANY, SIZE, U8, U16]
 LIB.tsr_map_restore.argtypes = [ANY, ANY, SIZE, ANY, SIZE]
+LIB.tsr_map_hold.argtypes = [ANY, ANY, ANY, SIZE, ANY, SIZE, ANY]
 CODEC = codec_library.Codec(LIB)
 
 
@@ -34,3 +35,15 @@ def restore(decoded, info, noise=None):
     status = LIB.tsr_map_restore(ctypes.byref(info), pointer(restored), restored.size, pointer(scratch), scratch.size)
     assert status == OK, status
     return restored
+
+
+def hold(disparity_map, earlier):
+    """A copy held to an earlier map of the same shape and step, and how many of its pixels differ from that still."""
+    held, earlier = np.ascontiguousarray(disparity_map).copy(), np.ascontiguousarray(earlier)
+    height, width = held.shape
+    info, reference = codec_library.Info(width, height), codec_library.Reference(earlier.ctypes.data, width, 0)
+    scratch, changed = np.zeros(width, np.uint16), ctypes.c_uint32()
+    status = LIB.tsr_map_hold(ctypes.byref(info), ctypes.byref(reference), pointer(held), width, pointer(scratch), width,
+                              ctypes.byref(changed))
+    assert status == OK, status
+    return held, changed.value

@@ -84,7 +84,7 @@ def round_trip(folder):
         sizes.append(coded.stat().st_size)
         check(told == {"width": 80, "height": 60, "bytes": sizes[-1], "bits_per_pixel": 8 * sizes[-1] / 4800,
                        "density": told["density"], "step_px": step, "near": 0, "disparities": 32, "d0_px": -31.125,
-                       "reference_id": None, "format_version": 2, "prior": 1, "packets": None, "out": str(coded)}, f"{step}: {told}")
+                       "reference_id": None, "format_version": 3, "prior": 2, "packets": None, "out": str(coded)}, f"{step}: {told}")
         check(abs(told["density"] - np.isfinite(values).mean()) < 1e-9, told)
         found = run_json("decode", coded, "-o", back)
         check(found == {**told, "out": str(back)}, f"{step}: {found}")
@@ -341,7 +341,7 @@ def bad_decode(folder):
     refuse_bytes("an empty file", b"", ["header", "0 bytes"])
     refuse_bytes("half a header", coded[:8], ["header", "8 bytes"])
     refuse_bytes("another version", changed(0, 1), ["version", "1"])
-    refuse_bytes("another mode", changed(0, 0x22), ["mode", "2"])
+    refuse_bytes("another mode", changed(0, 0x23), ["mode", "2"])
     refuse_bytes("another prior", changed(1, 0xF3), ["prior", "15"])
     refuse_bytes("another step", changed(1, 0x15), ["step", "5"])
     refuse_bytes("129 disparities", changed(2, 128), ["disparities", "129"])

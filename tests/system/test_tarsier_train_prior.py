@@ -19,8 +19,8 @@ import map_quality
 TARSIER = BUILD / "bin/tarsier"
 SOURCE = pathlib.Path(os.environ["TSR_SOURCE"])
 RNG = np.random.default_rng(13)
-# docs/codec.md, 2.8: tables of 6 kinds and contexts, alone and near; then what a reference adds.
-NUMBERS = 6 * 5 * 64 + 2 * 466 + 6 * 3 * 64 + 466
+# docs/codec.md, 2.8: tables of 6 kinds and contexts, alone, near, in packets; then what a reference adds.
+NUMBERS = 6 * 5 * 64 + 3 * 274 + 6 * 3 * 64 + 274
 
 
 def train(*words):

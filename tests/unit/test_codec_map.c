@@ -64,7 +64,7 @@ static void test_round_trip(void)
 static void test_header_bytes(void)
 {
     (void)encode();
-    const uint8_t header[TSR_MAP_HEADER_LEN] = {0x02, 0x12, 31, WIDTH, 0, HEIGHT, 0, 0x0c, 0xfe};
+    const uint8_t header[TSR_MAP_HEADER_LEN] = {0x03, 0x22, 31, WIDTH, 0, HEIGHT, 0, 0x0c, 0xfe};
     TEST_ASSERT_EQUAL_HEX8_ARRAY(header, out, TSR_MAP_HEADER_LEN);
 }
 
@@ -205,11 +205,11 @@ static void check_header_refused(enum tsr_status expected, unsigned at, uint8_t 
 static void test_header_refused(void)
 {
     check_header_refused(TSR_ERR_VERSION, 0, 0x01);
-    check_header_refused(TSR_ERR_VERSION, 0, 0x03);
-    check_header_refused(TSR_ERR_VERSION, 0, 0x22);
+    check_header_refused(TSR_ERR_VERSION, 0, 0x02);
+    check_header_refused(TSR_ERR_VERSION, 0, 0x23);
     check_header_refused(TSR_ERR_VERSION, 1, 0x02);
-    check_header_refused(TSR_ERR_VERSION, 1, 0x22);
-    check_header_refused(TSR_ERR_FORMAT, 1, 0x15);
+    check_header_refused(TSR_ERR_VERSION, 1, 0x12);
+    check_header_refused(TSR_ERR_FORMAT, 1, 0x25);
     check_header_refused(TSR_ERR_FORMAT, 2, 128);
     check_header_refused(TSR_ERR_FORMAT, 3, 0);
     check_header_refused(TSR_ERR_FORMAT, 4, 3);
@@ -266,7 +266,7 @@ static void test_near(void)
     TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_start(&encoder, &near, out, OUT_CAP, scratch, SCRATCH_COUNT));
     TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_rows(&encoder, map, WIDTH, HEIGHT));
     TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_finish(&encoder, &len));
-    TEST_ASSERT_EQUAL_HEX8(0x1a, out[1]);
+    TEST_ASSERT_EQUAL_HEX8(0x2a, out[1]);
     decode_all(out, len, NULL);
     unsigned different = 0;
     for (unsigned i = 0; i < WIDTH * HEIGHT; i++) {
@@ -293,7 +293,7 @@ static void test_against_a_reference(void)
     TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_rows(&encoder, map, WIDTH, HEIGHT));
     TEST_ASSERT_EQUAL(TSR_OK, tsr_map_encode_finish(&encoder, &len));
     TEST_ASSERT_LESS_THAN(alone_len, len);
-    const uint8_t header[] = {0x12, 0x12, 31, WIDTH, 0, HEIGHT, 0, 0x0c, 0xfe, 0x34, 0x12};
+    const uint8_t header[] = {0x13, 0x22, 31, WIDTH, 0, HEIGHT, 0, 0x0c, 0xfe, 0x34, 0x12};
     TEST_ASSERT_EQUAL_HEX8_ARRAY(header, out, sizeof header);
     decode_all(out, len, &against);
     TEST_ASSERT_EQUAL_UINT16_ARRAY(map, decoded, WIDTH * HEIGHT);

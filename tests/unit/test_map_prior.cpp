@@ -100,7 +100,6 @@ TEST(MapPrior, NothingSeenIsUndecided)
     const MapPrior prior = MapPriorTrainer{}.train();
     EXPECT_EQ(prior.weights, MapPrior{}.weights);
     EXPECT_EQ(prior.cells[TSR_MAP_CODING_ALONE][0], 32768);
-    EXPECT_EQ(prior.cells[TSR_MAP_CODING_ALONE][TSR_MAP_CANDIDATE_AT + TSR_MAP_LEVEL_COUNT / 2], 32768);
 }
 
 TEST(MapPrior, RefusesWhatTheInfoDoesNotAdmit)
@@ -130,9 +129,9 @@ TEST(MapPrior, SourceHoldsAllNumbers)
     constexpr std::size_t kTable = std::size_t{TSR_MAP_KIND_COUNT} * TSR_MAP_TABLE_LEN;
     const std::size_t first = source.find(".weights");
     EXPECT_EQ(count_numbers(source.substr(first, reference - first)),
-              kTable * TSR_MAP_TABLE_COUNT_ALONE + std::size_t{TSR_MAP_CELL_COUNT} * TSR_MAP_CODING_REFERENCE);
+              kTable * TSR_MAP_TABLE_COUNT_ALONE + std::size_t{TSR_MAP_TRAINED_CELL_COUNT} * TSR_MAP_CODING_REFERENCE);
     EXPECT_EQ(count_numbers(source.substr(reference)),
-              kTable * (TSR_MAP_TABLE_COUNT - TSR_MAP_TABLE_COUNT_ALONE) + TSR_MAP_CELL_COUNT);
+              kTable * (TSR_MAP_TABLE_COUNT - TSR_MAP_TABLE_COUNT_ALONE) + TSR_MAP_TRAINED_CELL_COUNT);
     for (std::size_t begin = 0, end = 0; (end = source.find('\n', begin)) != std::string::npos; begin = end + 1) {
         EXPECT_LE(end - begin, 120U);
     }

@@ -32,9 +32,9 @@ from vision_library import AGAIN, ANY, LIB, OK, SIZE, U8, U16  # noqa: E402
 
 STATUS = {FormatError: -4, VersionError: -5, NoReferenceError: -13}
 SHIFT = 5
-HEADER_LEN, LEN_MIN, COUNT_MAX = 4, 20, 4096
+VERSION, HEADER_LEN, LEN_MIN, COUNT_MAX = 2, 4, 20, 4096
 STATE_LEN = 16384
-SIZES = ((1, 1), (1, 9), (9, 1), (5, 7), (31, 6), (32, 5), (33, 9), (64, 20), (71, 23), (97, 12))  # width, height
+SIZES = ((1, 1), (1, 9), (9, 1), (5, 7), (39, 6), (40, 5), (41, 9), (80, 20), (83, 23), (121, 12))  # width, height
 KINDS = ("noise", "slope", "blocks", "zero", "empty")
 
 
@@ -126,7 +126,7 @@ def check_random(rng, info):
     first = int(rng.integers(0, groups))
     count = int(rng.integers(1, min(COUNT_MAX // 8, groups - first) + 1))
     map_id = int(rng.integers(0, 8))
-    start = (1 << 30 | map_id << 27 | int(rng.random() < 0.1) << 26 | (count - 1) << 17 | first).to_bytes(4, "little")
+    start = (VERSION << 30 | map_id << 27 | int(rng.random() < 0.1) << 26 | (count - 1) << 17 | first).to_bytes(4, "little")
     decoder = PacketDecoder(info, map_id, start)
     decoder.coder = Encoder(Decisions(rng), SHIFT)
     try:
@@ -142,7 +142,7 @@ def check_random(rng, info):
 def check_headers(rng):
     info = Info(35, 17, 16, 2)  # 595 pixels: the last group of 8 has 3
     for length in range(4):
-        check(rng, info, 0, b"\0\0\0\x40"[:length], length)
+        check(rng, info, 0, b"\0\0\0\x80"[:length], length)
     groups = -(-info.width * info.height // 8)
     for version in range(4):
         for map_id in (0, 1, 7):

@@ -6,7 +6,8 @@
 The pictures are those of picture_prior.py. Each is sent in packets of PACKET_LEN bytes, once in each of the ways of KINDS;
 what each context is asked in one packet is one stream of bits, every EVERY-th packet counts. The prior of a context is the
 pair of probability and count that codes its streams in the fewest bits. --without leaves out the pictures whose
-folder's name begins so, to measure on them. Needs a C compiler, NumPy and OpenCV.
+folder's name begins so, to measure on them. Packets are cut where the present prior fills them, so training again ends at
+slightly other numbers. Needs a C compiler, NumPy and OpenCV.
 
 SPDX-License-Identifier: Apache-2.0
 """
