@@ -255,6 +255,23 @@ static inline struct still look_up(const struct tsr_map_model *model, unsigned x
                           .se = bottom && right ? reference_label(model, below[1]) : none};
 }
 
+/* The same for the pixel x after the one before it: three of the eight are new. */
+static inline void slide(const struct tsr_map_model *model, struct still *still, unsigned x)
+{
+    const struct tsr_map_reference *reference = &model->reference;
+    const unsigned y = model->row;
+    const uint16_t *row = reference->map + (size_t)y * reference->stride + x + 1u;
+    const bool right = x + 1u < model->info.width;
+    still->w = still->here;
+    still->here = still->e;
+    still->nw = still->n;
+    still->n = still->ne;
+    still->s = still->se;
+    still->e = right ? reference_label(model, row[0]) : model->invalid;
+    still->ne = right && y > 0 ? reference_label(model, *(row - reference->stride)) : model->invalid;
+    still->se = right && y + 1u < model->info.height ? reference_label(model, row[reference->stride]) : model->invalid;
+}
+
 static inline bool code_literal(const struct tsr_map_model *model, struct side *side, uint16_t *here)
 {
     const uint32_t none = model->label_count;
@@ -292,14 +309,10 @@ static TSR_OUT_OF_LINE unsigned continue_flat(struct tsr_map_model *model, struc
     return done;
 }
 
-/* The pixel at x as labels are coded; *continued for the next one. */
-static inline bool code_pixel(struct tsr_map_model *model, struct side *side, struct around *at, unsigned x,
-                              bool *continued)
+/* A pixel as labels are coded; *continued for the next one. */
+static inline bool code_pixel(struct tsr_map_model *model, struct side *side, struct around *at, bool *continued)
 {
     const unsigned w = at->here[-1];
-    if (AGAINST_REFERENCE) {
-        at->still = look_up(model, x);
-    }
     const bool flat = is_flat(at, *continued);
     *continued = flat && side_bit(side, model, TSR_MAP_FLAT_AT + flat_context(model, at), is_near(at, w));
     if (*continued) {
@@ -326,6 +339,9 @@ static inline void step_on(struct tsr_map_model *model, struct around *at)
 static inline bool code_labels(struct tsr_map_model *model, struct side *side, struct around *at, unsigned x,
                                unsigned end, bool *continued)
 {
+    if (AGAINST_REFERENCE) {
+        at->still = look_up(model, x);
+    }
     while (x < end) {
         bool missed = false;
         if (*continued && !AGAINST_REFERENCE) {
@@ -335,11 +351,14 @@ static inline bool code_labels(struct tsr_map_model *model, struct side *side, s
             }
         }
         *continued = missed ? false : *continued;
-        if (missed ? !code_label(model, side, at, true) : !code_pixel(model, side, at, x, continued)) {
+        if (missed ? !code_label(model, side, at, true) : !code_pixel(model, side, at, continued)) {
             return false;
         }
         step_on(model, at);
         x++;
+        if (AGAINST_REFERENCE && x < end) {
+            slide(model, &at->still, x);
+        }
     }
     return true;
 }

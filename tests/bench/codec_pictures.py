@@ -14,7 +14,7 @@ from progress import tell
 SSIM_GOAL = 0.90
 STEPS = range(63, -1, -1)  # from the poorest
 PEER = "JPEG, optimised"
-RATIO_GOAL = 0.65  # of the peer's bytes
+RATIO_GOAL = 0.75  # of the peer's bytes
 
 
 def measure(folders):

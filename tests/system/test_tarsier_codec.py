@@ -148,7 +148,18 @@ def reference(folder):
             run_json("decode", coded, "-o", folder / "again.pfm", "--against", folder / "old_back.pfm",
                      "--reference-id", 65535)
             check((folder / "again.pfm").read_bytes() == back.read_bytes(), "the decoded map is another reference")
+    noisy = new.copy()
+    noisy[::3] += 1
+    map_quality.write_pfm(folder / "noisy.pfm", noisy)
     held = ["--against", folder / "old.pfm", "--reference-id", 0]
+    every, large = (run_json("encode", folder / "noisy.pfm", "-o", coded, *held, *hold)["bytes"] for hold in ([], ["--hold"]))
+    run_json("decode", coded, "-o", back, *held)
+    got, wanted = map_quality.read_pfm(back), quantised(old, 0.5, 32)
+    wanted[20:30, 50:60] = quantised(noisy, 0.5, 32)[20:30, 50:60]
+    far = np.ones(got.shape, bool)
+    far[14:36, 44:66] = False  # within reach of a window that the object fills
+    check(large < every / 2 and np.array_equal(got[far], wanted[far]) and np.array_equal(got[20:30, 50:60],
+                                                                                       wanted[20:30, 50:60]), "held")
     run_json("encode", folder / "new.pfm", "-o", coded, *held)
     run_json("decode", coded, "-o", back, *held)
     check(np.array_equal(map_quality.read_pfm(back), quantised(new, 0.5, 32)), "against a map file")

@@ -22,7 +22,7 @@ SOURCE = pathlib.Path(os.environ.get("TSR_SOURCE", pathlib.Path(__file__).resolv
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(SOURCE / "tests" / "support"))
 import codec_decoder as reference  # noqa: E402
-import codec_pictures  # noqa: E402
+import vector_pictures  # noqa: E402
 from codec_encoder import Decisions, Encoder  # noqa: E402
 
 OK, AGAIN, ERR_FORMAT, ERR_VERSION, ERR_REFERENCE = 0, 1, -4, -5, -13
@@ -114,13 +114,13 @@ def decode(kind, data, dtype, info, against=None):
 def make_reference(rng, kind, pixels, info):
     """A map of the same shape, its rows apart; "other" has another step and other disparities."""
     height, width = pixels.shape
-    noise = codec_pictures.synthetic_map(rng, "noise", width, height, info.disparities, info.step_log2)
+    noise = vector_pictures.synthetic_map(rng, "noise", width, height, info.disparities, info.step_log2)
     result = np.zeros((height, width + int(rng.integers(0, 4))), np.uint16)[:, :width]
     result[:] = {"equal": pixels,
                  "shifted": np.roll(pixels, (int(rng.integers(0, 2)), 1), (0, 1)),
                  "changed": np.where(rng.random((height, width)) < 0.1, noise, pixels),
                  "noise": noise,
-                 "other": codec_pictures.synthetic_map(rng, "noise", width, height, 128, 0),
+                 "other": vector_pictures.synthetic_map(rng, "noise", width, height, 128, 0),
                  "invalid": reference.INVALID}[kind]
     return result
 
@@ -154,7 +154,7 @@ def check_chosen(rng, kind, start, dtype, make_info, make_decoder, against=None)
 
 def check_map(rng, kind, reference_kind, info, counts):
     where = (kind, reference_kind, [getattr(info, field) for field, _ in info._fields_])
-    pixels = codec_pictures.synthetic_map(rng, kind, info.width, info.height, info.disparities, info.step_log2)
+    pixels = vector_pictures.synthetic_map(rng, kind, info.width, info.height, info.disparities, info.step_log2)
     name = int(rng.integers(0, 65536))
     against = rows_against = None
     if reference_kind is not None:
@@ -264,10 +264,10 @@ def main():
                 info = MapInfo(width, height, disparities, step_log2, near, int(rng.integers(-32768, 32768)))
                 check_map(rng, kind, reference_kind, info, counts)
     for near in range(9):
-        for kind in codec_pictures.KINDS:
+        for kind in vector_pictures.KINDS:
             for width, height in sizes + ([(160, 120)] if near in (0, 2, 8) else []):
-                check_gray(rng, codec_pictures.synthetic(rng, kind, width, height), near, counts)
-    for _, left, _ in codec_pictures.pairs(157, 117, 2):
+                check_gray(rng, vector_pictures.synthetic(rng, kind, width, height), near, counts)
+    for _, left, _ in vector_pictures.pairs(157, 117, 2):
         for near in (0, 1, 4, 8):
             check_gray(rng, left, near, counts)
             counts["real gray"] += 1

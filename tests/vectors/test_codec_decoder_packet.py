@@ -21,7 +21,7 @@ except ImportError:
 SOURCE = pathlib.Path(os.environ.get("TSR_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(SOURCE / "tests" / "support"))
-import codec_pictures  # noqa: E402
+import vector_pictures  # noqa: E402
 import map_library  # noqa: E402
 import vision_library  # noqa: E402
 from codec_decoder import FormatError, NoReferenceError, VersionError  # noqa: E402
@@ -154,7 +154,7 @@ def check_headers(rng):
 
 def real_maps():
     """Of stereo pairs, as a node would send them."""
-    for _, left, right in codec_pictures.pairs(120, 90, 2):
+    for _, left, right in vector_pictures.pairs(120, 90, 2):
         disparity_map = vision_library.match(left, right, 32, window=9, mode=0, prefilter_cap=7, uniqueness_percent=15,
                                              kernel=vision_library.portable_kernel())
         for step_log2 in (0, 2, 4):
@@ -171,7 +171,7 @@ def main():
             for step_log2 in range(5):
                 disparities = int(rng.choice([1, 2, 16, 31, 48, 64, 128]))
                 info = Info(width, height, disparities, step_log2, int(rng.integers(0, 2)))
-                disparity_map = codec_pictures.synthetic_map(rng, kind, width, height, disparities, step_log2)
+                disparity_map = vector_pictures.synthetic_map(rng, kind, width, height, disparities, step_log2)
                 check_map(rng, disparity_map, info, counts)
                 for _ in range(2):
                     check_random(rng, info)

@@ -19,7 +19,7 @@ except ImportError:
 SOURCE = pathlib.Path(os.environ.get("TSR_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(SOURCE / "tests" / "support"))
-import codec_pictures  # noqa: E402
+import vector_pictures  # noqa: E402
 import picture_library  # noqa: E402
 from codec_decoder import FormatError, VersionError  # noqa: E402
 from codec_decoder_picture import PictureDecoder, decode_picture  # noqa: E402
@@ -96,10 +96,10 @@ def main():
     rng = np.random.default_rng(seed)
     counts = {"encoded": 0, "damaged": 0, "refused": 0, "random": 0, "real": 0}
     for width, height in SIZES:
-        for kind in codec_pictures.KINDS:
+        for kind in vector_pictures.KINDS:
             for prior in (0, 1):
                 for step in (0, int(rng.integers(1, 30)), int(rng.integers(30, 45)), 63):
-                    picture = codec_pictures.synthetic(rng, kind, width, height)
+                    picture = vector_pictures.synthetic(rng, kind, width, height)
                     target_len = int(rng.choice((0, 0, width * height // 8 + 8)))
                     data = picture_library.encode(picture, step, prior, target_len)
                     where = (width, height, kind, prior, step, target_len)
@@ -110,7 +110,7 @@ def main():
         for _ in range(8):
             check_random(rng, width, height)
             counts["random"] += 1
-    for name, left, _ in codec_pictures.pairs(157, 117, 3):
+    for name, left, _ in vector_pictures.pairs(157, 117, 3):
         for step, target_len in ((35, 0), (int(rng.integers(0, 30)), 0), (36, 900)):
             check_encoded(picture_library.encode(left, step, target_len=target_len), (name, step, target_len))
             counts["real"] += 1

@@ -22,7 +22,7 @@ except ImportError:
 SOURCE = pathlib.Path(os.environ.get("TSR_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(SOURCE / "tests" / "support"))
-import codec_pictures  # noqa: E402
+import vector_pictures  # noqa: E402
 import view_library  # noqa: E402
 from codec_decoder import FormatError, NoReferenceError, VersionError  # noqa: E402
 from codec_decoder_view import Held, ViewDecoder, decode_view  # noqa: E402
@@ -179,7 +179,7 @@ def changed(rng, picture):
 def check_headers(rng):
     width, height = 9, 10
     held = BothHeld(width, height)
-    filtered = view_library.prefilter(codec_pictures.synthetic(rng, "wave", width, height))
+    filtered = view_library.prefilter(vector_pictures.synthetic(rng, "wave", width, height))
     check(view_library.encode(filtered), held, "held")
     shape = bytes((width, 0, height, 0))
     right, wrong = (number.to_bytes(2, "little") for number in (held.python.check(), held.python.check() ^ 256))
@@ -205,7 +205,7 @@ def main():
     kinds = [(cap, False) for cap in range(1, 8)] + [(7, True)] * 3
     for width, height in SIZES:
         for i, (cap, coarse) in enumerate(kinds):
-            first = codec_pictures.synthetic(rng, codec_pictures.KINDS[i % len(codec_pictures.KINDS)], width, height)
+            first = vector_pictures.synthetic(rng, vector_pictures.KINDS[i % len(vector_pictures.KINDS)], width, height)
             if i % 2:
                 frames = [view_library.prefilter(frame, cap) for frame in
                           (first, *(changed(rng, first) for _ in range(FRAMES - 1)))]
@@ -213,7 +213,7 @@ def main():
                 frames = [rng.integers(0, 2 * cap + 1, (height, width)).astype(np.uint8) for _ in range(FRAMES)]
             check_sequence(rng, frames, cap, coarse, counts)
     check_sequence(rng, [rng.integers(0, 15, (160, 240)).astype(np.uint8)], 7, False, counts)
-    for _, _, right in codec_pictures.pairs(157, 117, 2):
+    for _, _, right in vector_pictures.pairs(157, 117, 2):
         for cap, coarse in ((7, True), (7, False), (3, False)):
             frames = [view_library.prefilter(frame, cap) for frame in (right, changed(rng, right))]
             check_sequence(rng, frames, cap, coarse, counts)

@@ -7,6 +7,7 @@
 
 #include "tsr/codec/gray.h"
 #include "tsr/codec/map.h"
+#include "tsr/codec/map_hold.h"
 #include "tsr/codec/picture.h"
 #include "tsr/codec/view.h"
 #include "tsr/vision/prefilter.h"
@@ -199,9 +200,10 @@ const uint8_t *workbench_run_view(const struct workbench_case *bench, const uint
     return view_of_lead;
 }
 
-/* There and back at a step; the coded map stays in coded. */
-static size_t code_map(const struct workbench_case *bench, const uint16_t *map, uint8_t step_log2, const char *encode,
-                       const char *decode, uint8_t *coded, size_t coded_cap)
+/* There and back at a step, against the reference if there is one; the coded map stays in coded. */
+static size_t code_map(const struct workbench_case *bench, const uint16_t *map, uint8_t step_log2,
+                       const struct tsr_map_reference *reference, const char *encode, const char *decode,
+                       uint8_t *coded, size_t coded_cap)
 {
     size_t pixels = (size_t)bench->width * bench->height;
     const size_t scratch_count = sizeof map_scratch / sizeof map_scratch[0];
@@ -212,7 +214,10 @@ static size_t code_map(const struct workbench_case *bench, const uint16_t *map, 
                                 .d0_q4 = D0_Q4};
     size_t len = 0;
     workbench_begin();
-    enum tsr_status status = tsr_map_encode_start(&map_encoder, &info, coded, coded_cap, map_scratch, scratch_count);
+    enum tsr_status status =
+        reference != NULL
+            ? tsr_map_encode_start_against(&map_encoder, &info, reference, coded, coded_cap, map_scratch, scratch_count)
+            : tsr_map_encode_start(&map_encoder, &info, coded, coded_cap, map_scratch, scratch_count);
     for (unsigned row = 0; row < bench->height && status >= TSR_OK; row += ROWS_PER_STEP) {
         status = tsr_map_encode_rows(&map_encoder, map + (size_t)row * bench->width, bench->width, ROWS_PER_STEP);
     }
@@ -223,7 +228,7 @@ static size_t code_map(const struct workbench_case *bench, const uint16_t *map, 
     workbench_expect(status == TSR_OK, encode);
 
     workbench_begin();
-    status = tsr_map_decode_start(&map_decoder, coded, len, NULL, map_scratch, scratch_count, &info);
+    status = tsr_map_decode_start(&map_decoder, coded, len, reference, map_scratch, scratch_count, &info);
     for (unsigned row = 0; row < bench->height && status >= TSR_OK; row += ROWS_PER_STEP) {
         status =
             tsr_map_decode_rows(&map_decoder, map_decoded + (size_t)row * bench->width, bench->width, ROWS_PER_STEP);
@@ -233,14 +238,39 @@ static size_t code_map(const struct workbench_case *bench, const uint16_t *map, 
     return len;
 }
 
+/* A later map, in which a sixteenth of the view came nearer: held to the earlier one, and coded against it. */
+static void run_later_map(const struct workbench_case *bench, const uint16_t *map, uint8_t *coded, size_t coded_cap)
+{
+    const size_t pixels = (size_t)bench->width * bench->height;
+    const struct tsr_map_info info = {.width = bench->width, .height = bench->height};
+    const struct tsr_map_reference earlier = {map, bench->width, 1};
+    uint16_t *later = map_whole;
+    memcpy(later, map, pixels * sizeof *map);
+    for (unsigned y = bench->height / 4u; y < bench->height / 2u; y++) {
+        for (unsigned x = bench->width / 4u; x < bench->width / 2u; x++) {
+            later[y * bench->width + x] = (uint16_t)((bench->disparities - 2u) * TSR_DISPARITY_ONE_Q4);
+        }
+    }
+    workbench_begin();
+    const enum tsr_status status = tsr_map_hold(&info, &earlier, later, bench->width, map_scratch,
+                                                sizeof map_scratch / sizeof map_scratch[0], NULL);
+    workbench_end("map_hold", pixels);
+    workbench_expect(status == TSR_OK, "map_hold");
+    const size_t len =
+        code_map(bench, later, WORKBENCH_STEP_LOG2, &earlier, "map_encode_later", "map_decode_later", coded, coded_cap);
+    workbench_store("map_later.out", coded, len);
+}
+
 size_t workbench_run_map(const struct workbench_case *bench, const uint16_t *map, uint8_t *coded, size_t coded_cap)
 {
     size_t pixels = (size_t)bench->width * bench->height;
     memcpy(map_whole, map, pixels * sizeof *map);
     workbench_expect(tsr_quantise(map_whole, pixels, STEP_LOG2_WHOLE, bench->disparities) == TSR_OK, "quantise");
-    (void)code_map(bench, map_whole, STEP_LOG2_WHOLE, "map_encode_whole", "map_decode_whole", coded, coded_cap);
+    (void)code_map(bench, map_whole, STEP_LOG2_WHOLE, NULL, "map_encode_whole", "map_decode_whole", coded, coded_cap);
 
-    size_t len = code_map(bench, map, WORKBENCH_STEP_LOG2, "map_encode", "map_decode", coded, coded_cap);
+    run_later_map(bench, map, coded, coded_cap);
+
+    size_t len = code_map(bench, map, WORKBENCH_STEP_LOG2, NULL, "map_encode", "map_decode", coded, coded_cap);
     workbench_store("map_coded.out", coded, len);
     workbench_store("map_decoded.out", map_decoded, pixels * sizeof *map);
     return len;

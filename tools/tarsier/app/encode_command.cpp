@@ -1,5 +1,5 @@
 /*
- * tarsier encode MAP -o OUT.tdm [--step PX] [--near 1] [--packets N] [...]
+ * tarsier encode MAP -o OUT.tdm [--step PX] [--near 1] [--packets N] [--against OLD --hold] [...]
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -30,6 +30,7 @@ struct EncodeOptions {
     std::filesystem::path map;
     std::filesystem::path out;
     HeldMapOptions held;
+    bool hold = false;
     double step_px = 0.5;
     unsigned near = 0;
     std::optional<unsigned> disparities;
@@ -49,6 +50,9 @@ void check_files(const EncodeOptions &options)
     check_held_map(options.held);
     if (options.packet_len && !options.held.against.empty()) {
         throw InputError("command line", "--packets", "decode alone: leave out --against and --reference-id");
+    }
+    if (options.hold && options.held.against.empty()) {
+        throw InputError("command line", "--hold", "holds to the map of --against, which is missing");
     }
     std::vector<std::filesystem::path> inputs = {options.map};
     if (!options.held.against.empty()) {
@@ -103,12 +107,15 @@ int encode(const EncodeOptions &options)
     info.width = map.width;
     info.height = map.height;
     info.disparities = map.disparities;
-    const std::vector<std::uint16_t> values = quantised(map, info.step_log2);
+    std::vector<std::uint16_t> values = quantised(map, info.step_log2);
     expect_room(map, values, 1U << info.step_log2, options.map);
     if (options.packet_len) {
         return encode_packets(options, info, values);
     }
     const std::optional<HeldMap> held = read_held_map(options.held, info, options.map);
+    if (options.hold) {
+        values = held_to(info, std::move(values), held->values_q4);
+    }
     const CodedMap coded = encode_map(info, values, held);
     write_file_atomically(options.out, coded.bytes);
     print_coded_map(figures_of(coded), values, options.out, options.json);
@@ -136,6 +143,8 @@ Command declare_encode(CLI::App &command)
                     "packets that decode alone, of at most this many bytes; default: one stream")
         ->check(CLI::Range(TSR_MAP_PACKET_LEN_MIN, static_cast<int>(kMapPacketLenMax)));
     declare_held_map(command, options->held);
+    command.add_flag("--hold", options->hold,
+                     "keep what --against has where less than a matcher's window changed: noise moves edges");
     command.add_flag("--json", options->json, "print JSON");
     return [options] { return encode(*options); };
 }

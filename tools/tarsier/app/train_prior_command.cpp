@@ -12,6 +12,7 @@
 
 #include "coded_map_options.h"
 #include "commands.h"
+#include "tsr/coding/coded_map.h"
 #include "tsr/coding/disparity_values.h"
 #include "tsr/coding/map_prior_trainer.h"
 #include "tsr/coding/matcher_fingerprint.h"
@@ -20,10 +21,6 @@
 #include "tsr/host/input_error.h"
 #include "tsr/host/output_files.h"
 #include "tsr/stereo/disparity_file.h"
-
-extern "C" {
-#include "tsr/codec/map_hold.h"
-}
 
 namespace tsr
 {
@@ -67,14 +64,6 @@ Folder read_folder(const std::filesystem::path &path)
     return folder;
 }
 
-/* As a node does before it codes a map against another. */
-void hold(const tsr_map_info &info, const std::vector<std::uint16_t> &reference, std::vector<std::uint16_t> &values)
-{
-    const tsr_map_reference held{reference.data(), info.width, 0};
-    std::vector<std::uint16_t> scratch(TSR_MAP_HOLD_SCRATCH_COUNT(info.width));
-    tsr_map_hold(&info, &held, values.data(), info.width, scratch.data(), scratch.size(), nullptr);
-}
-
 void add(MapPriorTrainer &trainer, const TrainOptions &options, const DisparityValues &map,
          const DisparityValues *earlier)
 {
@@ -89,7 +78,7 @@ void add(MapPriorTrainer &trainer, const TrainOptions &options, const DisparityV
             std::vector<std::uint16_t> reference;
             if (earlier != nullptr) {
                 reference = quantised(*earlier, info.step_log2);
-                hold(info, reference, values);
+                values = held_to(info, std::move(values), reference);
             }
             trainer.add(info, values, reference);
         }

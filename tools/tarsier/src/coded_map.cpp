@@ -19,6 +19,10 @@
 #include "tsr/host/read_file.h"
 #include "tsr/stereo/disparity_file.h"
 
+extern "C" {
+#include "tsr/codec/map_hold.h"
+}
+
 namespace tsr
 {
 namespace
@@ -152,6 +156,20 @@ std::vector<std::uint16_t> decode_map(const CodedMap &coded, const std::filesyst
         }
     }
     return values;
+}
+
+std::vector<std::uint16_t> held_to(const tsr_map_info &info, std::vector<std::uint16_t> values_q4,
+                                   std::span<const std::uint16_t> earlier_q4)
+{
+    const tsr_map_reference earlier{earlier_q4.data(), info.width, 0};
+    std::vector<std::uint16_t> scratch(TSR_MAP_HOLD_SCRATCH_COUNT(info.width));
+    const std::size_t pixels = std::size_t{info.width} * info.height;
+    if (values_q4.size() != pixels || earlier_q4.size() != pixels ||
+        tsr_map_hold(&info, &earlier, values_q4.data(), info.width, scratch.data(), scratch.size(), nullptr) !=
+            TSR_OK) {
+        throw std::invalid_argument("maps of another shape than their info's");
+    }
+    return values_q4;
 }
 
 CodedMap encode_map(const tsr_map_info &info, std::span<const std::uint16_t> values_q4,

@@ -58,6 +58,11 @@ HeldMap read_held_map(const std::filesystem::path &file, std::uint16_t id, std::
 std::vector<std::uint16_t> decode_map(const CodedMap &coded, const std::filesystem::path &file,
                                       const std::optional<HeldMap> &held);
 
+/* The map held to an earlier one of the same shape and step, both [height][width], as nodes do before they code it
+ * against that (tsr/codec/map_hold.h). */
+std::vector<std::uint16_t> held_to(const tsr_map_info &info, std::vector<std::uint16_t> values_q4,
+                                   std::span<const std::uint16_t> earlier_q4);
+
 /* values_q4: [height][width], which info admits; against the held map, of the same shape, if there is one.
  * Throws std::invalid_argument for anything else. */
 CodedMap encode_map(const tsr_map_info &info, std::span<const std::uint16_t> values_q4,
