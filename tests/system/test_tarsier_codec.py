@@ -160,6 +160,12 @@ def reference(folder):
     far[14:36, 44:66] = False  # within reach of a window that the object fills
     check(large < every / 2 and np.array_equal(got[far], wanted[far]) and np.array_equal(got[20:30, 50:60],
                                                                                        wanted[20:30, 50:60]), "held")
+    run_json("encode", folder / "old.pfm", "-o", folder / "fine.tdm", "--step", 0.0625)
+    map_quality.write_pfm(folder / "spot.pfm", np.where((np.indices(old.shape) == 40).all(axis=0), 60.0, old))
+    for what, now, against, mention in (("held between steps", "new.pfm", "fine.tdm", "--step 0.5"),
+                                        ("held beyond the last", "old.pfm", "spot.pfm", "--disparities 61")):
+        refuse(what, "encode", folder / now, "-o", folder / "refused.tdm", "--against", folder / against,
+               "--reference-id", 0, "--hold", mentions=[against, "--hold", mention], left=[folder / "refused.tdm"])
     run_json("encode", folder / "new.pfm", "-o", coded, *held)
     run_json("decode", coded, "-o", back, *held)
     check(np.array_equal(map_quality.read_pfm(back), quantised(new, 0.5, 32)), "against a map file")

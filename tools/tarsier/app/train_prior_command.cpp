@@ -146,8 +146,11 @@ Command declare_train_prior(CLI::App &command)
                     "folders of maps (.pfm, or .png of 16 bits); a folder inside is a sequence of one static camera")
         ->required();
     command.add_option("-o,--out", options->out, "C source to write")->required()->check(refuse_empty_name);
-    command.add_option("--step", options->steps, "px; default: 1 0.5 0.25")->check(is_map_step());
-    command.add_option("--id", options->id, "of the prior, in every coded map's header")->check(CLI::Range(1, 15));
+    command.add_option("--step", options->steps, "one or more, px, after the folders; default: 1 0.5 0.25")
+        ->check(is_map_step());
+    command.add_option("--id", options->id, "of the prior, in every coded map's header")
+        ->check(CLI::Range(1, 15))
+        ->capture_default_str();
     return [options] { return train(*options); };
 }
 

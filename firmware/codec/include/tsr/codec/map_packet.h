@@ -31,7 +31,8 @@
 /* Elements of the uint16_t scratch rows. */
 #define TSR_MAP_PACKET_SCRATCH_COUNT TSR_MAP_SCRATCH_COUNT(TSR_MAP_PACKET_STRIP_WIDTH)
 
-/* Marks a pixel of a map of which no packet has come; no value and not TSR_DISPARITY_INVALID. */
+/* Marks a pixel of a map of which no packet has come; no value and not TSR_DISPARITY_INVALID:
+ * make it that one before the map is coded, held or restored. */
 #define TSR_MAP_PIXEL_MISSING UINT16_C(0xfffe)
 
 /* What a packet says of itself. */

@@ -54,7 +54,7 @@ enum tsr_status tsr_view_packets_next(struct tsr_view_packet_encoder *encoder, u
  *
  *   state     used meanwhile
  *   packet    out, filled
- *   view     [height * stride], out: only the packet's pixels
+ *   view      [height * stride], out: only the packet's pixels
  *   arrived   [arrived_cap], in and out: the packet's groups are marked; zeroed before the first packet;
  *             arrived_cap >= TSR_PACKET_ARRIVED_LEN(width, height)
  *
