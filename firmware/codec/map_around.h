@@ -25,6 +25,7 @@ struct around {
     const uint16_t *up;
     const uint16_t *up2;
     unsigned near;      /* 0 in a decoder */
+    unsigned near_here; /* the same of this pixel; used if AGAINST_REFERENCE */
     unsigned run;       /* pixels before this one whose label was that of their own W */
     struct still still; /* set if AGAINST_REFERENCE */
 };
@@ -91,7 +92,7 @@ static inline bool was_asked(const struct asked *asked, unsigned label)
 /* Would an encoder take this label for the pixel's? Whether there is a match is never changed. */
 static inline bool is_near(const struct around *at, unsigned label)
 {
-    return difference(*at->here, label) <= at->near;
+    return difference(*at->here, label) <= (AGAINST_REFERENCE ? at->near_here : at->near);
 }
 
 /* What changed around the pixel: W, N, NE, NW, a bit each. */

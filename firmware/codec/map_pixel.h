@@ -309,10 +309,24 @@ static TSR_OUT_OF_LINE unsigned continue_flat(struct tsr_map_model *model, struc
     return done;
 }
 
+/* An encoder that may take a near label takes the reference's, if that is near, and no other: neighbours that are near
+ * would move the map from the reference, which predicts it. */
+static inline void prefer_still(struct around *at)
+{
+    at->near_here = at->near;
+    if (at->near > 0 && difference(*at->here, at->still.here) <= at->near) {
+        *at->here = at->still.here;
+        at->near_here = 0;
+    }
+}
+
 /* A pixel as labels are coded; *continued for the next one. */
 static inline bool code_pixel(struct tsr_map_model *model, struct side *side, struct around *at, bool *continued)
 {
     const unsigned w = at->here[-1];
+    if (AGAINST_REFERENCE) {
+        prefer_still(at);
+    }
     const bool flat = is_flat(at, *continued);
     *continued = flat && side_bit(side, model, TSR_MAP_FLAT_AT + flat_context(model, at), is_near(at, w));
     if (*continued) {

@@ -128,7 +128,12 @@ HeldMap read_held_map(const std::filesystem::path &file, std::uint16_t id, std::
                              "was coded against the map with id " + std::to_string(coded.info.reference_id) +
                                  ": decode it first, and name the decoded map");
         }
-        return {id, coded.info.width, coded.info.height, decode_map(coded, file, std::nullopt)};
+        DisparityValues map{coded.info.width, coded.info.height, coded.info.disparities,
+                            decode_map(coded, file, std::nullopt)};
+        if (coded.info.step_log2 != step_log2) {
+            map.values_q4 = quantised(map, step_log2);
+        }
+        return {id, map.width, map.height, std::move(map.values_q4)};
     }
     const DisparityValues map = disparity_values(read_disparity_file(file), file);
     return {id, map.width, map.height, quantised(map, step_log2)};

@@ -47,8 +47,8 @@ std::vector<std::uint8_t> read_map_file(const std::filesystem::path &file);
 /* Refuses a header that the codec refuses, naming the field; file is what to name. */
 CodedMap coded_map_of(std::vector<std::uint8_t> bytes, const std::filesystem::path &file);
 
-/* A .tdm of one stream coded alone, as it decodes, or a map file (tsr/stereo/disparity_file.h) quantised to the
- * step. */
+/* A .tdm of one stream coded alone, as it decodes, or quantised if its step is another; or a map file
+ * (tsr/stereo/disparity_file.h), quantised. */
 HeldMap read_held_map(const std::filesystem::path &file, std::uint16_t id, std::uint8_t step_log2);
 
 /*
