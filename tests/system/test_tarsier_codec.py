@@ -228,6 +228,9 @@ def lost_packets(folder, header, records, held, whole):
         changed = bytearray(records[2])
         changed[at] ^= 0x20
         expect(f"another {what}", records[:2] + [changed] + records[3:], [2], len(changed))
+    # A literal packet of 4,096 pixels with no label but 0: version 2, id 0, as in 2a.1.
+    other = packet_file.record((2 << 30 | 1 << 26 | 511 << 17).to_bytes(4, "little"))
+    expect("pixels again by other bytes", [*records[1:3], other, *records[3:], other, *records[:1]], [])
     expect("bytes between", [records[0], b"\0between", *records[1:], RNG.bytes(40)], [], 48)
     expect("bytes lost from the middle", [*records[:3], records[3][:30] + records[4][40:], *records[5:]], [3, 4],
            30 + len(records[4]) - 40)
