@@ -163,6 +163,24 @@ def reference(folder):
     run_json("encode", folder / "new.pfm", "-o", coded, *held)
     run_json("decode", coded, "-o", back, *held)
     check(np.array_equal(map_quality.read_pfm(back), quantised(new, 0.5, 32)), "against a map file")
+    held_to_another_kind(folder, quantised(old, 0.5, 32))
+
+
+def held_to_another_kind(folder, now):
+    """An earlier map of a finer step, with disparities that this one does not have: as it looks from here, or not held."""
+    earlier, coded, back = now.copy(), folder / "other.tdm", folder / "other.pfm"
+    earlier[3, 4] = 100
+    earlier[2:-2:5, 2:-2:5] += 0.3125
+    map_quality.write_pfm(folder / "earlier.pfm", earlier)
+    map_quality.write_pfm(folder / "now.pfm", now)
+    run_json("encode", folder / "earlier.pfm", "-o", folder / "earlier.tdm", "--step", 0.0625)
+    run_json("decode", folder / "earlier.tdm", "-o", folder / "earlier.pfm")
+    held = ["--against", folder / "earlier.tdm", "--reference-id", 1]
+    run_json("encode", folder / "now.pfm", "-o", coded, *held, "--hold")
+    run_json("decode", coded, "-o", back, *held)
+    wanted = np.floor(map_quality.read_pfm(folder / "earlier.pfm") * 2) / 2
+    wanted[3, 4] = now[3, 4]
+    check(np.array_equal(map_quality.read_pfm(back), wanted), "held to a map of another kind")
 
 
 def held_by(packet, shape):

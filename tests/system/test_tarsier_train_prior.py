@@ -81,6 +81,14 @@ def learns(folder):
     done = train(maps / "camera", "-o", again)
     check("3 maps alone, 0 after another" in done.stdout, done)
 
+    far = scene()
+    far[3, 4] = 100
+    (folder / "far/camera").mkdir(parents=True)
+    map_quality.write_pfm(folder / "far/camera/0.pfm", far)
+    map_quality.write_pfm(folder / "far/camera/1.pfm", scene())
+    done = train(folder / "far", "-o", again)
+    check(done.returncode == 0 and "0 maps alone, 1 after another" in done.stdout, f"disparities of the map before: {done}")
+
 
 def bad_input(folder):
     maps, out = folder / "maps", folder / "bad.c"

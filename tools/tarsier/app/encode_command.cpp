@@ -114,7 +114,7 @@ int encode(const EncodeOptions &options)
     }
     const std::optional<HeldMap> held = read_held_map(options.held, info, options.map);
     if (options.hold) {
-        values = held_to(info, std::move(values), held->values_q4);
+        values = held_to(info, values, held->values_q4);
     }
     const CodedMap coded = encode_map(info, values, held);
     write_file_atomically(options.out, coded.bytes);

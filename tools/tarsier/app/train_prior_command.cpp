@@ -78,7 +78,7 @@ void add(MapPriorTrainer &trainer, const TrainOptions &options, const DisparityV
             std::vector<std::uint16_t> reference;
             if (earlier != nullptr) {
                 reference = quantised(*earlier, info.step_log2);
-                values = held_to(info, std::move(values), reference);
+                values = held_to(info, values, reference);
             }
             trainer.add(info, values, reference);
         }
