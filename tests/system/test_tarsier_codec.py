@@ -301,7 +301,7 @@ def bad_encode(folder):
     refuse("output without a name", "encode", source, "-o", "", mentions=["--out", "empty"])
     refuse("another ending", "encode", source, "-o", folder / "bad.pfm", mentions=["bad.pfm", "--out", ".tdm"])
     refuse("nowhere to write", "encode", source, "-o", folder / "no/where.tdm", mentions=["where.tdm"])
-    for option, wrong in (("--step", ("0.3", "2", "0", "-1", "nan", "half")), ("--near", ("2", "-1", "yes")),
+    for option, wrong in (("--step", ("0.3", "2", "0", "-1", "nan", "half", "")), ("--near", ("2", "-1", "yes")),
                           ("--disparities", ("0", "129", "-8", "many", "65568")),
                           ("--d0", ("2048", "-2048.1", "nan", "inf", "1e300", "far")),
                           ("--reference-id", ("-1", "65536", "old"))):
