@@ -1,7 +1,7 @@
 /*
  * Disparity-map codec: header, checks and the way between rows and labels.
  *
- *   byte 0      7..4 mode, 0 alone, 1 against a reference   3..0 format version, 2
+ *   byte 0      7..4 mode, 0 alone, 1 against a reference   3..0 format version, 3
  *   byte 1      7..4 prior   3 near                         2..0 step_log2
  *   byte 2      disparities - 1
  *   bytes 3..8  width, height, d0_q4, 16 bits each, little-endian

@@ -35,7 +35,7 @@ static void take_row(uint16_t *columns, unsigned width, const uint16_t *row, con
     for (unsigned x = 0; x < width; x++) {
         const unsigned differs = row != NULL && row[x] != reference[x];
         const unsigned windows = columns[x] & SIDE_MASK << WINDOWS_AT;
-        columns[x] = (uint16_t)(windows | ((columns[x] << 1 | differs) & SIDE_MASK));
+        columns[x] = (uint16_t)(windows | (((unsigned)columns[x] << 1 | differs) & SIDE_MASK));
     }
 }
 
@@ -48,7 +48,7 @@ static void vote(uint16_t *columns, unsigned width)
     }
     for (unsigned x = 0; x < width; x++) {
         sum += x + RADIUS < width ? differences(columns[x + RADIUS]) : 0;
-        const unsigned windows = (columns[x] >> WINDOWS_AT << 1 | (sum >= TSR_MAP_HOLD_COUNT)) & SIDE_MASK;
+        const unsigned windows = ((unsigned)columns[x] >> WINDOWS_AT << 1 | (sum >= TSR_MAP_HOLD_COUNT)) & SIDE_MASK;
         columns[x] = (uint16_t)(windows << WINDOWS_AT | (columns[x] & SIDE_MASK));
         sum -= x >= RADIUS ? differences(columns[x - RADIUS]) : 0;
     }

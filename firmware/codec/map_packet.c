@@ -171,7 +171,7 @@ enum tsr_status tsr_map_packet_decode(struct tsr_map_model *model, const struct 
                                       struct tsr_map_packet *packet, uint16_t *map, size_t stride)
 {
     if (model == NULL || info == NULL || bytes == NULL || scratch == NULL || packet == NULL || map == NULL ||
-        !tsr_map_is_valid_info(info)) {
+        map_id > TSR_MAP_PACKET_MAP_ID_MAX || !tsr_map_is_valid_info(info)) {
         return TSR_ERR_ARG;
     }
     struct tsr_packet read = {.count = 0};

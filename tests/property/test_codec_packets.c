@@ -202,6 +202,8 @@ static void test_refusals(void)
     TEST_ASSERT_EQUAL(TSR_ERR_SIZE, tsr_map_packets_next(&encoder, packets[1], 90, &len));
     TEST_ASSERT_EQUAL(TSR_ERR_NOREF, tsr_map_packet_decode(&model, &info, 4, packets[0], packet_lens[0], scratch, cap,
                                                            &packet, decoded, 40));
+    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_map_packet_decode(&model, &info, 8, packets[0], packet_lens[0], scratch, cap,
+                                                         &packet, decoded, 40));
     TEST_ASSERT_EQUAL(TSR_ERR_FORMAT,
                       tsr_map_packet_decode(&model, &info, 5, packets[0], 3, scratch, cap, &packet, decoded, 40));
     TEST_ASSERT_EQUAL(TSR_ERR_SIZE, tsr_map_packet_decode(&model, &info, 5, packets[0], packet_lens[0], scratch, cap,

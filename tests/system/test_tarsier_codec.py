@@ -160,15 +160,27 @@ def reference(folder):
     far[14:36, 44:66] = False  # within reach of a window that the object fills
     check(large < every / 2 and np.array_equal(got[far], wanted[far]) and np.array_equal(got[20:30, 50:60],
                                                                                        wanted[20:30, 50:60]), "held")
-    run_json("encode", folder / "old.pfm", "-o", folder / "fine.tdm", "--step", 0.0625)
-    map_quality.write_pfm(folder / "spot.pfm", np.where((np.indices(old.shape) == 40).all(axis=0), 60.0, old))
-    for what, now, against, mention in (("held between steps", "new.pfm", "fine.tdm", "--step 0.5"),
-                                        ("held beyond the last", "old.pfm", "spot.pfm", "--disparities 61")):
-        refuse(what, "encode", folder / now, "-o", folder / "refused.tdm", "--against", folder / against,
-               "--reference-id", 0, "--hold", mentions=[against, "--hold", mention], left=[folder / "refused.tdm"])
     run_json("encode", folder / "new.pfm", "-o", coded, *held)
     run_json("decode", coded, "-o", back, *held)
     check(np.array_equal(map_quality.read_pfm(back), quantised(new, 0.5, 32)), "against a map file")
+    held_to_another_kind(folder, quantised(old, 0.5, 32))
+
+
+def held_to_another_kind(folder, now):
+    """An earlier map of a finer step, with disparities that this one does not have: as it looks from here, or not held."""
+    earlier, coded, back = now.copy(), folder / "other.tdm", folder / "other.pfm"
+    earlier[3, 4] = 100
+    earlier[2:-2:5, 2:-2:5] += 0.3125
+    map_quality.write_pfm(folder / "earlier.pfm", earlier)
+    map_quality.write_pfm(folder / "now.pfm", now)
+    run_json("encode", folder / "earlier.pfm", "-o", folder / "earlier.tdm", "--step", 0.0625)
+    run_json("decode", folder / "earlier.tdm", "-o", folder / "earlier.pfm")
+    held = ["--against", folder / "earlier.tdm", "--reference-id", 1]
+    run_json("encode", folder / "now.pfm", "-o", coded, *held, "--hold")
+    run_json("decode", coded, "-o", back, *held)
+    wanted = quantised(map_quality.read_pfm(folder / "earlier.pfm"), 0.5, 128)
+    wanted[3, 4] = now[3, 4]
+    check(np.array_equal(map_quality.read_pfm(back), wanted), "held to a map of another kind")
 
 
 def held_by(packet, shape):
@@ -234,6 +246,9 @@ def lost_packets(folder, header, records, held, whole):
         changed = bytearray(records[2])
         changed[at] ^= 0x20
         expect(f"another {what}", records[:2] + [changed] + records[3:], [2], len(changed))
+    # A literal packet of 4,096 pixels with no label but 0: version 2, id 0, as in 2a.1.
+    other = packet_file.record((2 << 30 | 1 << 26 | 511 << 17).to_bytes(4, "little"))
+    expect("pixels again by other bytes", [*records[1:3], other, *records[3:], other, *records[:1]], [])
     expect("bytes between", [records[0], b"\0between", *records[1:], RNG.bytes(40)], [], 48)
     expect("bytes lost from the middle", [*records[:3], records[3][:30] + records[4][40:], *records[5:]], [3, 4],
            30 + len(records[4]) - 40)
@@ -286,7 +301,7 @@ def bad_encode(folder):
     refuse("output without a name", "encode", source, "-o", "", mentions=["--out", "empty"])
     refuse("another ending", "encode", source, "-o", folder / "bad.pfm", mentions=["bad.pfm", "--out", ".tdm"])
     refuse("nowhere to write", "encode", source, "-o", folder / "no/where.tdm", mentions=["where.tdm"])
-    for option, wrong in (("--step", ("0.3", "2", "0", "-1", "nan", "half")), ("--near", ("2", "-1", "yes")),
+    for option, wrong in (("--step", ("0.3", "2", "0", "-1", "nan", "half", "")), ("--near", ("2", "-1", "yes")),
                           ("--disparities", ("0", "129", "-8", "many", "65568")),
                           ("--d0", ("2048", "-2048.1", "nan", "inf", "1e300", "far")),
                           ("--reference-id", ("-1", "65536", "old"))):

@@ -81,6 +81,14 @@ def learns(folder):
     done = train(maps / "camera", "-o", again)
     check("3 maps alone, 0 after another" in done.stdout, done)
 
+    far = scene()
+    far[3, 4] = 100
+    (folder / "far/camera").mkdir(parents=True)
+    map_quality.write_pfm(folder / "far/camera/0.pfm", far)
+    map_quality.write_pfm(folder / "far/camera/1.pfm", scene())
+    done = train(folder / "far", "-o", again)
+    check(done.returncode == 0 and "0 maps alone, 1 after another" in done.stdout, f"disparities of the map before: {done}")
+
 
 def bad_input(folder):
     maps, out = folder / "maps", folder / "bad.c"
@@ -91,6 +99,12 @@ def bad_input(folder):
     map_quality.write_pfm(mixed / "camera/1.pfm", scene()[1:])
     map_quality.write_pfm(single / "camera/0.pfm", scene())
     (cut / "a.pfm").write_bytes((maps / "b.pfm").read_bytes()[:-5])
+    for name in ("loop", "nowhere", "pipe"):
+        (folder / name).mkdir()
+        map_quality.write_pfm(folder / name / "a.pfm", scene())
+    (folder / "loop/b.pfm").symlink_to("b.pfm")
+    (folder / "nowhere/b.png").symlink_to("none.png")
+    os.mkfifo(folder / "pipe/b.pfm")
 
     def refuse_folder(what, path, *words, mentions):
         refuse(what, path, "-o", out, *words, mentions=mentions, left=out)
@@ -107,7 +121,10 @@ def bad_input(folder):
     refuse_folder("a sequence of one", single, mentions=["single", "no two"])
     refuse_folder("a sequence of two sizes", mixed, mentions=["camera/1.pfm", "size", "0.pfm"])
     refuse_folder("a truncated map", cut, mentions=["a.pfm"])
-    for option, wrong in (("--step", ("0.3", "0", "wide")), ("--id", ("0", "16", "-1", "first"))):
+    refuse_folder("a link to itself", folder / "loop", mentions=["loop/b.pfm", "symbolic links"])
+    refuse_folder("a link to nothing", folder / "nowhere", mentions=["nowhere/b.png"])
+    refuse_folder("a pipe", folder / "pipe", mentions=["pipe/b.pfm", "not a regular file"])
+    for option, wrong in (("--step", ("0.3", "0", "wide", "")), ("--id", ("0", "16", "-1", "first"))):
         for value in wrong:
             refuse_folder(f"{option} {value}", maps, f"{option}={value}", mentions=[option])
 

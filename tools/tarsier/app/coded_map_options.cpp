@@ -132,15 +132,16 @@ std::optional<HeldMap> read_held_map(const HeldMapOptions &options, const tsr_ma
     return held;
 }
 
+/* CLI::IsMember takes an empty word for one of its members. */
 CLI::Validator is_map_step()
 {
     const auto check = [](const std::string &text) {
-        constexpr std::array kSteps = {1.0, 0.5, 0.25, 0.125, 0.0625};
+        constexpr std::array<double, TSR_MAP_STEP_LOG2_MAX + 1> kSteps = {1, 0.5, 0.25, 0.125, 0.0625};
         double step = 0;
-        const bool is_step = CLI::detail::lexical_cast(text, step) && std::ranges::find(kSteps, step) != kSteps.end();
-        return is_step ? std::string() : "'" + text + "' is none of: 1, 0.5, 0.25, 0.125, 0.0625";
+        const bool is_one = CLI::detail::lexical_cast(text, step) && std::ranges::find(kSteps, step) != kSteps.end();
+        return is_one ? std::string() : "'" + text + "' is none of 1, 0.5, 0.25, 0.125 and 0.0625";
     };
-    return {check, "{1,0.5,0.25,0.125,0.0625}"};
+    return {check, "1, 0.5, 0.25, 0.125 or 0.0625"};
 }
 
 CodedMapFigures figures_of(const CodedMap &coded)

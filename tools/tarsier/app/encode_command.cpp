@@ -85,24 +85,6 @@ void expect_room(const DisparityValues &map, const std::vector<std::uint16_t> &v
     }
 }
 
-/* Of the map that the others are held to: a value that this one cannot have. */
-void expect_codable(const EncodeOptions &options, const tsr_map_info &info, const std::vector<std::uint16_t> &held)
-{
-    for (std::size_t i = 0; i < held.size(); i++) {
-        const bool is_between = held[i] % (1U << info.step_log2) != 0;
-        if (held[i] == TSR_DISPARITY_INVALID || (!is_between && held[i] < info.disparities * TSR_DISPARITY_ONE_Q4)) {
-            continue;
-        }
-        throw InputError(
-            options.held.against.string(), "--hold",
-            fmt::format("{:g} px at ({}, {}) would be held: ", static_cast<double>(held[i]) / TSR_DISPARITY_ONE_Q4,
-                        i % info.width, i / info.width) +
-                (is_between ? fmt::format("no multiple of --step {:g}", options.step_px)
-                            : fmt::format("needs --disparities {} or more, not {}", held[i] / TSR_DISPARITY_ONE_Q4 + 1,
-                                          info.disparities)));
-    }
-}
-
 /* Packets are decoded once more for what is printed: with near the values are others. */
 int encode_packets(const EncodeOptions &options, const tsr_map_info &info, const std::vector<std::uint16_t> &values)
 {
@@ -132,8 +114,7 @@ int encode(const EncodeOptions &options)
     }
     const std::optional<HeldMap> held = read_held_map(options.held, info, options.map);
     if (options.hold) {
-        values = held_to(info, std::move(values), held->values_q4);
-        expect_codable(options, info, values);
+        values = held_to(info, values, held->values_q4);
     }
     const CodedMap coded = encode_map(info, values, held);
     write_file_atomically(options.out, coded.bytes);

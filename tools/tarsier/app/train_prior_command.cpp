@@ -34,10 +34,11 @@ struct TrainOptions {
     unsigned id = 1;
 };
 
-bool is_map_file(const std::filesystem::directory_entry &entry)
+/* By its name: what is not a file is refused where it is read. */
+bool is_map_file(const std::filesystem::path &path)
 {
-    const std::string ending = entry.path().extension().string();
-    return entry.is_regular_file() && (ending == ".pfm" || ending == ".png");
+    const std::string ending = path.extension().string();
+    return ending == ".pfm" || ending == ".png";
 }
 
 struct Folder {
@@ -50,10 +51,11 @@ Folder read_folder(const std::filesystem::path &path)
     std::error_code error;
     Folder folder;
     for (const auto &entry : std::filesystem::directory_iterator(path, error)) {
-        if (is_map_file(entry)) {
-            folder.maps.push_back(entry.path());
-        } else if (entry.is_directory()) {
+        std::error_code unknown; /* a link to nowhere is no folder */
+        if (entry.is_directory(unknown)) {
             folder.folders.push_back(entry.path());
+        } else if (is_map_file(entry.path())) {
+            folder.maps.push_back(entry.path());
         }
     }
     if (error) {
@@ -78,7 +80,7 @@ void add(MapPriorTrainer &trainer, const TrainOptions &options, const DisparityV
             std::vector<std::uint16_t> reference;
             if (earlier != nullptr) {
                 reference = quantised(*earlier, info.step_log2);
-                values = held_to(info, std::move(values), reference);
+                values = held_to(info, values, reference);
             }
             trainer.add(info, values, reference);
         }

@@ -163,18 +163,22 @@ std::vector<std::uint16_t> decode_map(const CodedMap &coded, const std::filesyst
     return values;
 }
 
-std::vector<std::uint16_t> held_to(const tsr_map_info &info, std::vector<std::uint16_t> values_q4,
+std::vector<std::uint16_t> held_to(const tsr_map_info &info, const std::vector<std::uint16_t> &values_q4,
                                    std::span<const std::uint16_t> earlier_q4)
 {
-    const tsr_map_reference earlier{earlier_q4.data(), info.width, 0};
-    std::vector<std::uint16_t> scratch(TSR_MAP_HOLD_SCRATCH_COUNT(info.width));
     const std::size_t pixels = std::size_t{info.width} * info.height;
-    if (values_q4.size() != pixels || earlier_q4.size() != pixels ||
-        tsr_map_hold(&info, &earlier, values_q4.data(), info.width, scratch.data(), scratch.size(), nullptr) !=
-            TSR_OK) {
+    if (values_q4.size() != pixels || earlier_q4.size() != pixels) {
         throw std::invalid_argument("maps of another shape than their info's");
     }
-    return values_q4;
+    const tsr_map_reference earlier{earlier_q4.data(), info.width, 0};
+    std::vector<std::uint16_t> held = values_q4;
+    std::vector<std::uint16_t> scratch(TSR_MAP_HOLD_SCRATCH_COUNT(info.width));
+    expect_ok(tsr_map_hold(&info, &earlier, held.data(), info.width, scratch.data(), scratch.size(), nullptr));
+    for (std::size_t i = 0; i < pixels; i++) {
+        const bool can_be_had = held[i] == TSR_DISPARITY_INVALID || held[i] < info.disparities * TSR_DISPARITY_ONE_Q4;
+        held[i] = can_be_had ? held[i] : values_q4[i];
+    }
+    return held;
 }
 
 CodedMap encode_map(const tsr_map_info &info, std::span<const std::uint16_t> values_q4,

@@ -9,7 +9,6 @@
 #include <array>
 #include <memory>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -43,24 +42,68 @@ std::uint16_t record_checksum(std::span<const std::uint8_t> len_bytes, std::span
     return checksum(packet, checksum(len_bytes));
 }
 
+/*
+ * The checksum of any stretch of a file in constant time: where a packet is sought at every byte, reading it there
+ * would cost a thousand times as much. A CRC is linear: with a start s and equally long a and b,
+ *
+ *   crc(s ^ t, a ^ b) = crc(s, a) ^ crc(t, b),   so   crc(s, b) = crc(0, ab) ^ crc(s ^ crc(0, a), zeros as long as b)
+ */
+class StretchChecksums
+{
+  public:
+    explicit StretchChecksums(std::span<const std::uint8_t> bytes) : from_begin_(bytes.size() + 1)
+    {
+        for (std::size_t i = 0; i < bytes.size(); i++) {
+            from_begin_[i + 1] = checksum(bytes.subspan(i, 1), from_begin_[i]);
+        }
+        constexpr std::array<std::uint8_t, 1> kZero = {0};
+        for (unsigned bit = 0; bit < kBits; bit++) {
+            after_zeros_[0][bit] = static_cast<std::uint16_t>(1U << bit);
+            for (std::size_t len = 1; len < after_zeros_.size(); len++) {
+                after_zeros_[len][bit] = checksum(kZero, after_zeros_[len - 1][bit]);
+            }
+        }
+    }
+
+    /* Of bytes [first, first + len), len <= kMapPacketLenMax. */
+    std::uint16_t of(std::size_t first, std::size_t len, std::uint16_t start) const
+    {
+        std::uint16_t sum = from_begin_[first + len];
+        for (unsigned bit = 0; bit < kBits; bit++) {
+            if (((start ^ from_begin_[first]) >> bit & 1U) != 0) {
+                sum ^= after_zeros_[len][bit];
+            }
+        }
+        return sum;
+    }
+
+  private:
+    static constexpr unsigned kBits = 16;
+    std::vector<std::uint16_t> from_begin_; /* crc(0, the first i bytes) */
+    std::array<std::array<std::uint16_t, kBits>, kMapPacketLenMax + 1>
+        after_zeros_{}; /* crc(1 << bit, so many zeros) */
+};
+
 void append_u16(std::vector<std::uint8_t> &bytes, std::size_t value)
 {
     bytes.push_back(static_cast<std::uint8_t>(value & 255U));
     bytes.push_back(static_cast<std::uint8_t>(value >> 8U));
 }
 
-/* The packet that begins with its record at bytes[0]; empty if that is none, or not intact. */
-std::span<const std::uint8_t> packet_at(std::span<const std::uint8_t> bytes)
+/* The packet that begins with its record at bytes[at]; empty if that is none, or not intact. */
+std::span<const std::uint8_t> packet_at(std::span<const std::uint8_t> bytes, std::size_t at,
+                                        const StretchChecksums &checksums)
 {
-    tsr_reader reader = tsr_reader_make(bytes.data(), bytes.size());
+    const std::span<const std::uint8_t> record = bytes.subspan(at);
+    tsr_reader reader = tsr_reader_make(record.data(), record.size());
     const std::size_t len = tsr_read_u16(&reader);
     const std::uint16_t told = tsr_read_u16(&reader);
     if (!tsr_reader_ok(&reader) || len < TSR_MAP_PACKET_HEADER_LEN || len > kMapPacketLenMax ||
         len > tsr_reader_left(&reader)) {
         return {};
     }
-    const std::span<const std::uint8_t> packet = bytes.subspan(kRecordHeadLen, len);
-    return record_checksum(bytes.first(2), packet) == told ? packet : std::span<const std::uint8_t>{};
+    const bool is_intact = checksums.of(at + kRecordHeadLen, len, checksum(record.first(2))) == told;
+    return is_intact ? record.subspan(kRecordHeadLen, len) : std::span<const std::uint8_t>{};
 }
 
 void check_header(const MapPackets &map, unsigned flags, const std::filesystem::path &file)
@@ -121,6 +164,35 @@ MapPackets read_header(std::span<const std::uint8_t> bytes, const std::filesyste
     }
     throw InputError(file.string(), "packets", "none of " + std::to_string(map.count) + " is intact");
 }
+
+/* Groups of 8 pixels of which a packet has come. */
+class GroupsArrived
+{
+  public:
+    explicit GroupsArrived(std::size_t pixels) : arrived_((pixels + kGroup - 1) / kGroup) {}
+
+    /* Does a packet hold one of them? Of a header that the codec refuses no matter what is said. */
+    bool have_one_of(std::span<const std::uint8_t> packet) const
+    {
+        tsr_reader reader = tsr_reader_make(packet.data(), packet.size());
+        const std::uint32_t word = tsr_read_u32(&reader); /* docs/codec.md, 2a.1 */
+        const std::size_t first = std::min<std::size_t>(word & 0x1ffffU, arrived_.size());
+        const std::size_t end = std::min<std::size_t>(first + (word >> 17U & 0x1ffU) + 1U, arrived_.size());
+        return std::find(arrived_.begin() + first, arrived_.begin() + end, true) != arrived_.begin() + end;
+    }
+
+    /* Groups of which only a part decoded may come again. */
+    void add(const tsr_map_packet &packet, bool is_whole)
+    {
+        const std::size_t first = packet.first / kGroup;
+        const std::size_t end = (packet.first + packet.count + (is_whole ? kGroup - 1U : 0U)) / kGroup;
+        std::fill(arrived_.begin() + first, arrived_.begin() + end, true);
+    }
+
+  private:
+    static constexpr std::size_t kGroup = 8;
+    std::vector<char> arrived_;
+};
 
 void expect_ok(bool ok, tsr_status status)
 {
@@ -191,9 +263,10 @@ bool is_map_packet_file(std::span<const std::uint8_t> bytes)
 MapPackets read_map_packets(std::span<const std::uint8_t> bytes, const std::filesystem::path &file)
 {
     MapPackets map = read_header(bytes, file);
+    const auto checksums = std::make_unique<StretchChecksums>(bytes);
     /* Where a record is not intact its length cannot be trusted: the next one may begin at any byte. */
     for (std::size_t at = kHeaderLen; at < bytes.size();) {
-        const std::span<const std::uint8_t> packet = packet_at(bytes.subspan(at));
+        const std::span<const std::uint8_t> packet = packet_at(bytes, at, *checksums);
         if (packet.empty()) {
             map.damaged_len++;
             at++;
@@ -213,18 +286,19 @@ MapOfPackets decode_map_packets(const MapPackets &map, const std::filesystem::pa
     expect_ok(status == TSR_OK, status);
     const auto model = std::make_unique<tsr_map_model>();
     std::array<std::uint16_t, TSR_MAP_PACKET_SCRATCH_COUNT> scratch{};
-    std::set<std::uint32_t> firsts;
+    GroupsArrived arrived(result.values_q4.size());
     std::optional<unsigned> other_version;
     for (const std::vector<std::uint8_t> &bytes : map.packets) {
+        if (arrived.have_one_of(bytes)) {
+            continue;
+        }
         tsr_map_packet packet{};
         status = tsr_map_packet_decode(model.get(), &map.info, map.map_id, bytes.data(), bytes.size(), scratch.data(),
                                        scratch.size(), &packet, result.values_q4.data(), map.info.width);
-        if (status == TSR_OK) {
-            firsts.insert(packet.first);
-        }
+        arrived.add(packet, status == TSR_OK);
+        result.found += status == TSR_OK ? 1 : 0;
         other_version = status == TSR_ERR_VERSION ? bytes[3] >> 6U : other_version;
     }
-    result.found = firsts.size();
     if (result.found == 0) {
         refuse_all(map, other_version, file);
     }
