@@ -58,8 +58,9 @@ HeldMap read_held_map(const std::filesystem::path &file, std::uint16_t id, std::
 std::vector<std::uint16_t> decode_map(const CodedMap &coded, const std::filesystem::path &file,
                                       const std::optional<HeldMap> &held);
 
-/* The map held to an earlier one of the same shape and step, both [height][width], as is done before it is coded against
- * that (tsr/codec/map_hold.h). A pixel keeps its value where the earlier one's is beyond the map's disparities. */
+/* The map held to an earlier one of the same shape and step, both [height][width], as is done before it is coded
+ * against that (tsr/codec/map_hold.h). A pixel keeps its value where the earlier one's is beyond the map's disparities.
+ */
 std::vector<std::uint16_t> held_to(const tsr_map_info &info, const std::vector<std::uint16_t> &values_q4,
                                    std::span<const std::uint16_t> earlier_q4);
 
