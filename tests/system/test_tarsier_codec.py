@@ -303,10 +303,12 @@ def bad_encode(folder):
     refuse("nowhere to write", "encode", source, "-o", folder / "no/where.tdm", mentions=["where.tdm"])
     for option, wrong in (("--step", ("0.3", "2", "0", "-1", "nan", "half", "")), ("--near", ("2", "-1", "yes")),
                           ("--disparities", ("0", "129", "-8", "many", "65568")),
-                          ("--d0", ("2048", "-2048.1", "nan", "inf", "1e300", "far")),
+                          ("--d0", ("2048", "-2048.1", "nan", "inf", "1e300", "far", "")),
                           ("--reference-id", ("-1", "65536", "old"))):
         for value in wrong:
             refuse_map(f"{option} {value}", f"{option}={value}", mentions=[option])
+    refuse_map("an offset without digits", "--d0", "", mentions=["--d0", "empty"])
+    refuse_map("a map without a name", map_file="", mentions=["map", "empty"])
     refuse_map("unknown option", "--packet", 90, mentions=["--packet"])
     for value in ("19", "1281", "-1", "all"):
         refuse_map(f"--packets {value}", f"--packets={value}", mentions=["--packets"])

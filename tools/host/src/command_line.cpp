@@ -39,6 +39,19 @@ std::string describe(const CLI::App &app, const CLI::ParseError &error)
     return "'" + unknown.front() + "' is not expected";
 }
 
+/* CLI11 takes an empty word for 0 where it expects a number. */
+void refuse_empty_words(const CLI::App &app)
+{
+    for (const CLI::Option *option : app.get_options()) {
+        if (std::ranges::count(option->results(), std::string()) > 0) {
+            throw InputError("command line", option->get_name(), "is empty");
+        }
+    }
+    for (const CLI::App *command : app.get_subcommands()) {
+        refuse_empty_words(*command);
+    }
+}
+
 } // namespace
 
 CLI::Validator above_zero()
@@ -64,6 +77,7 @@ int run_command_line(const Program &program, int argc, char **argv)
         } catch (const CLI::ParseError &error) {
             throw InputError("command line", "", describe(app, error));
         }
+        refuse_empty_words(app);
         return program.run();
     });
 }

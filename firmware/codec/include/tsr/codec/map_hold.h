@@ -35,7 +35,8 @@
  * Change the pixels of the map that are held, in place.
  *
  *   info        width and height
- *   reference   .map of that shape, of the same step as the map
+ *   reference   .map of that shape; its values are taken as they are, so they must be ones that info admits, or
+ *               tsr_map_encode_rows refuses the held map
  *   map         [height * stride], in and out
  *   scratch     [scratch_cap] >= TSR_MAP_HOLD_SCRATCH_COUNT(width), used meanwhile
  *   changed     out: pixels that differ from the reference still; NULL if nobody asks
