@@ -14,8 +14,6 @@
 
 /* A picture that has cost this much more than a byte a pixel is only predicted until it is cheap again. */
 #define TSR_PICTURE_SLACK_LEN 256u
-/* The step changes by at most this from band to band. */
-#define TSR_PICTURE_STEP_CHANGE_MAX 8
 
 /* What contexts start from, docs/codec.md, 5.7. */
 extern const uint16_t tsr_picture_prior[TSR_PICTURE_CONTEXT_COUNT];

@@ -102,13 +102,6 @@ def lens_of(maps, key, codec, step_log2, all_peers):
     return {**result, **later_lens(maps, key, codec, step_log2)}
 
 
-def correct(disparity_map, truth):
-    """The part of the pixels with a truth that are within 1 px of it."""
-    known = np.isfinite(truth)
-    right = (disparity_map != 65535) & (np.abs(disparity_map / 16.0 - np.where(known, truth, 0)) <= 1)
-    return (right & known).sum() / known.sum()
-
-
 def later_lens(maps, key, codec, step_log2):
     """Bytes of the later maps of its sequences alone, against the earlier and held to it; correct pixels lost by that."""
     result = dict.fromkeys((LATER_ALONE, LATER_AGAINST, LATER_HELD, LATER_LOSS), 0)
@@ -120,7 +113,8 @@ def later_lens(maps, key, codec, step_log2):
             data = codec.encode(sent, maps.disparities[key], step_log2, reference=earlier)
             assert (codec.decode(data, sent.shape, earlier) == sent).all(), key
             result[name] += data.size
-        result[LATER_LOSS] += (correct(later, truth) - correct(held, truth)) / len(maps.sequences[key])
+        correct = [stereo_pairs.judge(one, truth)["correct"] for one in (later, held)]
+        result[LATER_LOSS] += (correct[0] - correct[1]) / len(maps.sequences[key])
     return result
 
 

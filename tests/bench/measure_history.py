@@ -17,18 +17,15 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import history_library  # noqa: E402
 import stereo_pairs  # noqa: E402
 import vision_library  # noqa: E402
-from measure_view import NOISE_SIGMA, OBJECT_PART, correct, noisy, paste, show  # noqa: E402
+from measure_view import NOISE_SIGMA, OBJECT_PART, changed_scenes, correct, noisy, show  # noqa: E402
 
 
 def next_views(pairs, near, trials, mode, part):
     sizes, losses = [], []
-    for i, (left, right, truth, disparities) in enumerate(pairs):
-        lost = []
-        for trial in range(trials):
-            rng = np.random.default_rng(1000 * i + trial)
-            other = pairs[(i + 1 + rng.integers(len(pairs) - 1)) % len(pairs)][0]
-            new_left, new_right, new_truth = paste((left, right, truth), other, disparities, rng, part)
-            height, width = left.shape
+    for i, pair in enumerate(pairs):
+        lost, right, disparities = [], pair[1], pair[3]
+        for new_left, new_right, new_truth, rng in changed_scenes(pair, pairs, i, trials, part):
+            height, width = right.shape
             wing, lead = history_library.Held(width, height), history_library.Held(width, height)
             history_library.decode(history_library.encode(noisy(right, rng, NOISE_SIGMA), near, wing), lead)
             seen_left, seen_right = noisy(new_left, rng, NOISE_SIGMA), noisy(new_right, rng, NOISE_SIGMA)

@@ -49,6 +49,15 @@ def paste(pair, patch_of, disparities, rng, part):
     return left, right, truth
 
 
+def changed_scenes(pair, pairs, i, trials, part):
+    """Pair i of the pairs after an object has appeared in it, as views and truth, and the generator for the noise: trials times."""
+    *views, disparities = pair
+    for trial in range(trials):
+        rng = np.random.default_rng(1000 * i + trial)
+        other = pairs[(i + 1 + rng.integers(len(pairs) - 1)) % len(pairs)][0]
+        yield *paste(views, other, disparities, rng, part), rng
+
+
 def first_views(pairs, coarse, cap):
     sizes, losses = [], []
     for left, right, truth, disparities in pairs:
@@ -62,13 +71,10 @@ def first_views(pairs, coarse, cap):
 
 def next_views(pairs, coarse, trials, sigma, part=OBJECT_PART):
     sizes, losses = [], []
-    for i, (left, right, truth, disparities) in enumerate(pairs):
-        lost = []
-        for trial in range(trials):
-            rng = np.random.default_rng(1000 * i + trial)
-            other = pairs[(i + 1 + rng.integers(len(pairs) - 1)) % len(pairs)][0]
-            new_left, new_right, new_truth = paste((left, right, truth), other, disparities, rng, part)
-            height, width = left.shape
+    for i, pair in enumerate(pairs):
+        lost, right, disparities = [], pair[1], pair[3]
+        for new_left, new_right, new_truth, rng in changed_scenes(pair, pairs, i, trials, part):
+            height, width = right.shape
             wing, lead = view_library.Held(width, height), view_library.Held(width, height)
             view_library.decode(view_library.encode(view_library.prefilter(noisy(right, rng, sigma)), 7, coarse, wing), lead)
             seen_left, seen_right = noisy(new_left, rng, sigma), noisy(new_right, rng, sigma)

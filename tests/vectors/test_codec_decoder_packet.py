@@ -28,7 +28,7 @@ from codec_decoder import FormatError, NoReferenceError, VersionError  # noqa: E
 from codec_decoder_packet import PacketDecoder, decode_packet  # noqa: E402
 from codec_encoder import Decisions, Encoder  # noqa: E402
 from codec_library import MISSING, PACKET_SCRATCH_COUNT, Info, pointer  # noqa: E402
-from vision_library import AGAIN, ANY, LIB, OK, SIZE, U8, U16  # noqa: E402
+from vision_library import AGAIN, ANY, LIB, OK, SIZE, U8  # noqa: E402
 
 STATUS = {FormatError: -4, VersionError: -5, NoReferenceError: -13}
 SHIFT = 5
