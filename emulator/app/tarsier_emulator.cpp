@@ -1,7 +1,8 @@
 /*
- * tarsier-emulator: runs a site on recorded frames in virtual time.
+ * tarsier-emulator: runs a site on recorded frames, or a virtual scene, in virtual time.
  *
  *   tarsier-emulator site.toml --out out
+ *   tarsier-emulator scenario.toml --set pairs.baseline_mm=100 --out out
  *   tarsier-emulator --pair LEFT_DIR RIGHT_DIR --focal-px F --baseline-mm B --out out
  *
  * SPDX-License-Identifier: Apache-2.0
@@ -19,7 +20,9 @@
 #include "tsr/emulator/out_folder.h"
 #include "tsr/emulator/pair_site.h"
 #include "tsr/emulator/preflight.h"
+#include "tsr/emulator/recorded_pictures.h"
 #include "tsr/emulator/report.h"
+#include "tsr/emulator/scene_pictures.h"
 #include "tsr/emulator/simulation.h"
 #include "tsr/host/atomic_file.h"
 #include "tsr/host/command_line.h"
@@ -37,6 +40,7 @@ struct Options {
     fs::path site;
     std::vector<fs::path> pair;
     tsr::PairOptions pair_options;
+    std::vector<std::string> settings;
     std::optional<std::uint64_t> seed;
     fs::path out;
     fs::path sink; /* tarsier-sink; beside this program by default */
@@ -45,7 +49,8 @@ struct Options {
 
 void declare(CLI::App &app, Options &options)
 {
-    app.add_option("SITE", options.site, "site.toml");
+    app.add_option("SITE", options.site, "site.toml, or scenario.toml of a virtual scene");
+    app.add_option("--set", options.settings, "of a scenario: TABLE.FIELD=VALUE in the place of what the file says");
     auto *pair = app.add_option("--pair", options.pair, "folders of left and right frames, instead of SITE");
     pair->expected(2);
     app.add_option("--focal-px", options.pair_options.focal_px, "focal length of the rectified pair, px")->needs(pair);
@@ -177,12 +182,10 @@ void print_result(const fs::path &out, const nlohmann::ordered_json &summary)
                 (out / "index.html").c_str());
 }
 
-int run(const Options &options)
+/* One site with its pictures, into the out folder. */
+int run_site(const Options &options, const tsr::Site &site, const tsr::KeyRing &keys, tsr::Pictures &pictures)
 {
     const auto start = std::chrono::steady_clock::now();
-    const tsr::Site site = with_absolute_folders(choose_site(options));
-    const tsr::KeyRing keys = tsr::derive_test_keys(site.seed, site);
-    tsr::check_run(site, keys);
     tsr::OutFolder out(options.out);
     tsr::write_site(out.file("site.toml"), site);
     tsr::load_site(out.file("site.toml")); /* what the sink would refuse is refused here, by name */
@@ -191,7 +194,7 @@ int run(const Options &options)
     take_signals();
     tsr::SinkProcess sink({options.sink, out.file("site.toml"), out.file("keys.toml"), out.file("sink.db"), out.path(),
                            out.file("sink.log")});
-    tsr::Simulation simulation(site, keys, sink);
+    tsr::Simulation simulation(site, keys, pictures, sink);
     ProgressBar progress(!options.quiet);
     simulation.run([&](std::uint64_t now_us, std::uint64_t end_us) {
         progress(now_us, end_us);
@@ -201,7 +204,7 @@ int run(const Options &options)
     sink.finish();
 
     simulation.capture().write(out.file("capture.pcapng"));
-    const auto maps = tsr::read_received_maps(site, simulation, out.path());
+    const auto maps = tsr::read_received_maps(site, pictures, out.path());
     const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const auto summary = tsr::make_summary(site, simulation, maps, sink.restarts(), wall_s);
     tsr::write_page(out.path(), summary, simulation, maps);
@@ -213,6 +216,39 @@ int run(const Options &options)
         return 128 + stop_signal;
     }
     return 0;
+}
+
+int run_recorded(const Options &options)
+{
+    if (!options.settings.empty()) {
+        throw tsr::InputError("command line", "--set", "is for scenarios, and this is a site");
+    }
+    const tsr::Site site = with_absolute_folders(choose_site(options));
+    const tsr::KeyRing keys = tsr::derive_test_keys(site.seed, site);
+    tsr::check_nodes(site, keys);
+    tsr::check_recorded(site);
+    tsr::RecordedPictures pictures(site);
+    return run_site(options, site, keys, pictures);
+}
+
+int run_scenario(const Options &options)
+{
+    std::vector<std::string> settings = options.settings;
+    if (options.seed) {
+        settings.push_back("seed=" + std::to_string(*options.seed));
+    }
+    const tsr::Scenario scenario = tsr::load_scenario(options.site, settings);
+    const tsr::Staging staging = tsr::stage_scenario(scenario);
+    const tsr::KeyRing keys = tsr::derive_test_keys(scenario.seed, staging.site);
+    tsr::check_nodes(staging.site, keys);
+    tsr::ScenePictures pictures(scenario, staging);
+    return run_site(options, staging.site, keys, pictures);
+}
+
+int run(const Options &options)
+{
+    const bool scenario = !options.site.empty() && options.pair.empty() && tsr::is_scenario_file(options.site);
+    return scenario ? run_scenario(options) : run_recorded(options);
 }
 
 } // namespace

@@ -38,22 +38,19 @@ EmulatedNode::EmulatedNode(const Site &site, const SiteNode &node, const KeyRing
         serve_mac();
         schedule_step(around_.queue.now_us());
     });
-    if (!node.frames.empty()) {
-        add_camera(false, site.resolve(node.frames));
-    }
-    if (!node.frames_right.empty()) {
-        add_camera(true, site.resolve(node.frames_right));
-    }
+    add_camera(false);
+    add_camera(true);
 }
 
 EmulatedNode::~EmulatedNode() = default;
 
-void EmulatedNode::add_camera(bool right, const std::filesystem::path &folder)
+void EmulatedNode::add_camera(bool right)
 {
-    auto frames = std::make_shared<RecordedFrames>(folder, site_node_.watch_period_ms);
-    recordings_.push_back(frames);
-    std::unique_ptr<RecordedCamera> &camera = right ? right_ : left_;
-    RecordedCamera::Owner owner;
+    auto source = around_.pictures.source(site_node_, right);
+    if (!source) {
+        return;
+    }
+    SourceCamera::Owner owner;
     owner.now_us = [this] { return around_.queue.now_us(); };
     owner.finish_at = [this, right](std::uint64_t time_us) {
         around_.queue.at(time_us, [this, right] { (right ? right_ : left_)->finish(); });
@@ -62,7 +59,7 @@ void EmulatedNode::add_camera(bool right, const std::filesystem::path &folder)
         tsr_node_on_camera(node_.get(), right, status, time_us);
         schedule_step(around_.queue.now_us());
     };
-    camera = std::make_unique<RecordedCamera>(frames, std::move(owner));
+    (right ? right_ : left_) = std::make_unique<SourceCamera>(std::move(source), std::move(owner));
 }
 
 void EmulatedNode::start()
@@ -197,26 +194,8 @@ const tsr_sender_counters &EmulatedNode::sender_counters() const
 EnergyMj EmulatedNode::energy() const
 {
     const std::uint64_t captures = (left_ ? left_->captures() : 0) + (right_ ? right_->captures() : 0);
-    const std::uint64_t camera_us = captures * (RecordedCamera::kExposureUs + RecordedCamera::kReadoutUs);
+    const std::uint64_t camera_us = captures * (SourceCamera::kExposureUs + SourceCamera::kReadoutUs);
     return energy_of(around_.power, around_.air.times(radio_), cpu_busy_us_, around_.queue.now_us(), camera_us);
-}
-
-std::string EmulatedNode::frame_name_at(std::uint64_t time_us) const
-{
-    if (recordings_.empty()) {
-        return {};
-    }
-    const RecordedFrames &frames = *recordings_.front();
-    return frames.file(frames.index_at(time_us / 1000)).filename().string();
-}
-
-std::uint64_t EmulatedNode::recording_end_us() const
-{
-    std::uint64_t end_us = 0;
-    for (const auto &recording : recordings_) {
-        end_us = std::max(end_us, recording->time_ms(recording->count() - 1) * 1000);
-    }
-    return end_us;
 }
 
 } // namespace tsr

@@ -13,30 +13,20 @@ namespace tsr
 namespace
 {
 
-std::optional<MapError> error_of(const Site &site, const Simulation &simulation, const ReceivedMap &map,
+std::optional<MapError> error_of(const Site &site, Pictures &pictures, const ReceivedMap &map,
                                  const std::filesystem::path &out)
 {
     const SitePair *pair = site.pair_of(map.node);
-    if (pair == nullptr || pair->truth.empty()) {
+    const auto truth = pair != nullptr ? pictures.truth(*pair, map.capture_time_us) : std::nullopt;
+    if (!truth) {
         return std::nullopt;
     }
-    std::string frame_name;
-    for (const auto &node : simulation.nodes()) {
-        if (node->id() == map.node) {
-            frame_name = node->frame_name_at(map.capture_time_us);
-        }
-    }
-    const auto truth_file = truth_file_for(site.resolve(pair->truth), frame_name);
-    if (!truth_file) {
-        return std::nullopt;
-    }
-    return compare_with_truth(read_pfm(out / (map.file + ".pfm")), read_pfm(*truth_file), *pair, *truth_file);
+    return compare_with_truth(read_pfm(out / (map.file + ".pfm")), truth->disparity_px, *pair, truth->name);
 }
 
 } // namespace
 
-std::vector<ReceivedMap> read_received_maps(const Site &site, const Simulation &simulation,
-                                            const std::filesystem::path &out)
+std::vector<ReceivedMap> read_received_maps(const Site &site, Pictures &pictures, const std::filesystem::path &out)
 {
     const auto file = out / "sink.json";
     std::vector<ReceivedMap> maps;
@@ -57,7 +47,7 @@ std::vector<ReceivedMap> read_received_maps(const Site &site, const Simulation &
         throw InputError(file.string(), "json", error.what());
     }
     for (ReceivedMap &map : maps) {
-        map.error = error_of(site, simulation, map, out);
+        map.error = error_of(site, pictures, map, out);
     }
     return maps;
 }

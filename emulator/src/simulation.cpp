@@ -29,14 +29,15 @@ AirModel air_model(const Site &site)
 
 const tsr_port_ops Simulation::kPortOps = {&Simulation::write_port};
 
-Simulation::Simulation(const Site &site, const KeyRing &keys, SinkProcess &sink) : site_(site), sink_(sink)
+Simulation::Simulation(const Site &site, const KeyRing &keys, Pictures &pictures, SinkProcess &sink)
+    : site_(site), pictures_(pictures), sink_(sink)
 {
     Air::Clock clock;
     clock.now_us = [this] { return queue_.now_us(); };
     clock.at = [this](std::uint64_t time_us, std::function<void()> action) { queue_.at(time_us, std::move(action)); };
     air_ = std::make_unique<Air>(air_model(site_), std::move(clock));
     for (const SiteNode &node : site_.nodes) {
-        EmulatedNode::Surroundings around{queue_, *air_, power_, site_.seed, {}, {}};
+        EmulatedNode::Surroundings around{queue_, *air_, power_, pictures_, site_.seed, {}, {}};
         if (node.role == Role::gateway) {
             around.port = {&kPortOps, this};
         }
@@ -83,15 +84,13 @@ bool Simulation::quiet() const
 
 void Simulation::run(const Progress &progress)
 {
-    std::uint64_t recorded_us = 0;
     std::uint64_t longest_period_us = 0;
     for (const auto &node : nodes_) {
-        recorded_us = std::max(recorded_us, node->recording_end_us());
         longest_period_us = std::max<std::uint64_t>(longest_period_us, node->site_node().watch_period_ms * 1000u);
         node->start();
     }
     /* Every watching node sees the last frame at least once, and however short a recording is, there is a first map. */
-    const std::uint64_t played_us = std::max(recorded_us + 2 * longest_period_us, kFirstMapFrames * longest_period_us);
+    const std::uint64_t played_us = std::max(pictures_.end_us() + 2 * longest_period_us, kFirstMapFrames * longest_period_us);
     const std::uint64_t latest_us = played_us + kPatienceUs;
     while (!queue_.empty() && queue_.next_us() <= latest_us) {
         if (queue_.next_us() > played_us && quiet()) {

@@ -35,20 +35,6 @@ double share(std::size_t part, std::size_t whole)
 
 } // namespace
 
-std::optional<std::filesystem::path> truth_file_for(const std::filesystem::path &folder, const std::string &frame_name)
-{
-    const std::string frame_stem = std::filesystem::path(frame_name).stem().string();
-    std::optional<std::filesystem::path> newest;
-    for (const auto &entry : std::filesystem::directory_iterator(folder)) {
-        const auto &file = entry.path();
-        if (file.extension() == ".pfm" && file.stem().string() <= frame_stem &&
-            (!newest || newest->stem().string() < file.stem().string())) {
-            newest = file;
-        }
-    }
-    return newest;
-}
-
 MapError compare_with_truth(const FloatImage &map, const FloatImage &truth, const SitePair &pair,
                             const std::filesystem::path &name)
 {

@@ -14,7 +14,7 @@
 #include <sys/random.h>
 #include <sys/stat.h>
 
-#include "toml_fields.h"
+#include "tsr/host/toml_fields.h"
 #include "tsr/host/atomic_file.h"
 #include "tsr/host/input_error.h"
 #include "tsr/host/site.h"

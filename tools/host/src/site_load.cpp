@@ -4,7 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "toml_fields.h"
+#include "tsr/host/site_fields.h"
+#include "tsr/host/toml_fields.h"
 
 namespace tsr
 {
@@ -20,29 +21,6 @@ void read_site(TomlFields &fields, Site &site)
     site.channel = static_cast<int>(fields.integer("channel", 11, 26, site.channel));
     site.seed = static_cast<std::uint64_t>(
         fields.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), static_cast<std::int64_t>(site.seed)));
-    fields.refuse_unknown();
-}
-
-void read_radio(TomlFields &fields, SiteRadio &radio)
-{
-    radio.tx_power_dbm = fields.number("tx_power_dbm", -40, 30, radio.tx_power_dbm);
-    radio.reference_loss_db = fields.number("reference_loss_db", 0, 120, radio.reference_loss_db);
-    radio.path_loss_exponent = fields.number("path_loss_exponent", 1, 8, radio.path_loss_exponent);
-    radio.sensitivity_dbm = fields.number("sensitivity_dbm", -140, 0, radio.sensitivity_dbm);
-    radio.frame_loss = fields.number("frame_loss", 0, 1, radio.frame_loss);
-    fields.refuse_unknown();
-}
-
-void read_thresholds(TomlFields &fields, SiteThresholds &limits)
-{
-    limits.similarity_px2 = fields.number("similarity_px2", 1.0 / 256, 254, limits.similarity_px2);
-    limits.similarity_clip_px = fields.number("similarity_clip_px", 0.0625, 15.9375, limits.similarity_clip_px);
-    limits.similarity_blocks =
-        static_cast<int>(fields.integer("similarity_blocks", 0, 65535, limits.similarity_blocks));
-    limits.similarity_overlap_min = fields.number("similarity_overlap_min", 0, 1, limits.similarity_overlap_min);
-    limits.change_deviation_min =
-        static_cast<int>(fields.integer("change_deviation_min", 1, 127, limits.change_deviation_min));
-    limits.change_cells_min = static_cast<int>(fields.integer("change_cells_min", 0, 65535, limits.change_cells_min));
     fields.refuse_unknown();
 }
 
@@ -140,6 +118,29 @@ SitePair read_pair(TomlFields &fields)
 }
 
 } // namespace
+
+void read_radio(TomlFields &fields, SiteRadio &radio)
+{
+    radio.tx_power_dbm = fields.number("tx_power_dbm", -40, 30, radio.tx_power_dbm);
+    radio.reference_loss_db = fields.number("reference_loss_db", 0, 120, radio.reference_loss_db);
+    radio.path_loss_exponent = fields.number("path_loss_exponent", 1, 8, radio.path_loss_exponent);
+    radio.sensitivity_dbm = fields.number("sensitivity_dbm", -140, 0, radio.sensitivity_dbm);
+    radio.frame_loss = fields.number("frame_loss", 0, 1, radio.frame_loss);
+    fields.refuse_unknown();
+}
+
+void read_thresholds(TomlFields &fields, SiteThresholds &limits)
+{
+    limits.similarity_px2 = fields.number("similarity_px2", 1.0 / 256, 254, limits.similarity_px2);
+    limits.similarity_clip_px = fields.number("similarity_clip_px", 0.0625, 15.9375, limits.similarity_clip_px);
+    limits.similarity_blocks =
+        static_cast<int>(fields.integer("similarity_blocks", 0, 65535, limits.similarity_blocks));
+    limits.similarity_overlap_min = fields.number("similarity_overlap_min", 0, 1, limits.similarity_overlap_min);
+    limits.change_deviation_min =
+        static_cast<int>(fields.integer("change_deviation_min", 1, 127, limits.change_deviation_min));
+    limits.change_cells_min = static_cast<int>(fields.integer("change_cells_min", 0, 65535, limits.change_cells_min));
+    fields.refuse_unknown();
+}
 
 Site load_site(const std::filesystem::path &file)
 {

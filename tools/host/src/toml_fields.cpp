@@ -1,5 +1,5 @@
 /* Typed access to TOML tables. SPDX-License-Identifier: Apache-2.0 */
-#include "toml_fields.h"
+#include "tsr/host/toml_fields.h"
 
 #include <charconv>
 #include <cmath>
@@ -52,6 +52,19 @@ std::string shown(double value)
     return {text.data(), result.ptr};
 }
 
+/* Tables are joined, everything else is replaced. */
+void overwrite(toml::table &table, const toml::table &by)
+{
+    for (const auto &[key, value] : by) {
+        toml::table *inner = table[key].as_table();
+        if (inner != nullptr && value.is_table()) {
+            overwrite(*inner, *value.as_table());
+        } else {
+            table.insert_or_assign(key, value);
+        }
+    }
+}
+
 } // namespace
 
 TomlFields::TomlFields(const toml::table &table, std::string file, std::string prefix)
@@ -70,8 +83,10 @@ std::string TomlFields::path(std::string_view field) const
 void TomlFields::refuse(std::string_view field, const std::string &reason) const
 {
     const toml::node *node = table_->get(field);
-    const auto at = node != nullptr ? node->source().begin.line : table_->source().begin.line;
-    throw InputError(at > 0 ? file_ + ":" + std::to_string(at) : file_, path(field), reason);
+    const toml::source_region &source = node != nullptr ? node->source() : table_->source();
+    const bool is_setting = source.path && *source.path != file_;
+    const std::string place = is_setting ? *source.path : file_ + ":" + std::to_string(source.begin.line);
+    throw InputError(source.begin.line > 0 ? place : file_, path(field), reason);
 }
 
 const toml::node *TomlFields::find(std::string_view field)
@@ -206,6 +221,13 @@ void TomlFields::refuse_unknown() const
 TomlFile::TomlFile(const std::filesystem::path &file)
     : file_(file.string()), table_(parse(file_, read_text_file(file, kTomlLenMax)))
 {
+}
+
+TomlFile::TomlFile(const std::filesystem::path &file, const std::vector<std::string> &settings) : TomlFile(file)
+{
+    for (const std::string &setting : settings) {
+        overwrite(table_, parse("--set '" + setting + "'", setting));
+    }
 }
 
 } // namespace tsr

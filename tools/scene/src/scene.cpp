@@ -20,7 +20,7 @@ using Maker = Scene (*)(const SceneOptions &, const LayoutOptions &);
 
 const std::map<std::string, Maker> &makers()
 {
-    static const std::map<std::string, Maker> all = {{"tank", make_tank}};
+    static const std::map<std::string, Maker> all = {{"bedroom", make_bedroom}, {"tank", make_tank}};
     return all;
 }
 

@@ -23,6 +23,7 @@ Command declare_decode(CLI::App &command);
 Command declare_encode(CLI::App &command);
 Command declare_match(CLI::App &command);
 Command declare_rectify_table(CLI::App &command);
+Command declare_render(CLI::App &command);
 Command declare_train_prior(CLI::App &command);
 
 } // namespace tsr

@@ -2,6 +2,7 @@
  * tarsier: the tools.
  *
  *   tarsier demo-scene --pictures DIR --out DIR          recorded folders and site of the demo
+ *   tarsier render SCENARIO.toml --out DIR               a virtual scene as recorded folders with ground truth
  *   tarsier match LEFT RIGHT --disparities N -o OUT      a disparity map as a node computes it
  *   tarsier encode MAP -o OUT.tdm                       a map in few bytes
  *   tarsier decode MAP.tdm -o OUT                        the map of those bytes
@@ -29,6 +30,7 @@ struct Entry {
 
 constexpr Entry kCommands[] = {
     {"demo-scene", "write the demo's recorded frames and site", tsr::declare_demo_scene},
+    {"render", "write a virtual scene as recorded frames with ground truth", tsr::declare_render},
     {"match", "match a rectified pair as a node does", tsr::declare_match},
     {"encode", "code a disparity map in few bytes", tsr::declare_encode},
     {"decode", "decode a coded disparity map", tsr::declare_decode},

@@ -20,8 +20,9 @@
 #include "tsr/emulator/energy.h"
 #include "tsr/emulator/event_queue.h"
 #include "tsr/emulator/node_setup.h"
+#include "tsr/emulator/pictures.h"
 #include "tsr/hal/air.h"
-#include "tsr/hal/recorded_camera.h"
+#include "tsr/hal/source_camera.h"
 
 namespace tsr
 {
@@ -40,6 +41,7 @@ class EmulatedNode
         EventQueue &queue;
         Air &air;
         const PowerModel &power;
+        Pictures &pictures;
         std::uint64_t seed;
         tsr_port port;                                          /* of a gateway */
         std::function<void(const PhaseChange &)> phase_changed; /* may be empty */
@@ -66,14 +68,9 @@ class EmulatedNode
     /* Instructions done, by kind of work. */
     const std::array<std::uint64_t, TSR_WORK_COUNT> &work_units() const { return work_units_; }
     EnergyMj energy() const; /* from power-on until now */
-    /* Time of the last frame of its recording, 0 without cameras. */
-    std::uint64_t recording_end_us() const;
-
-    /* Name of the frame its left camera shows at a time; empty without one. */
-    std::string frame_name_at(std::uint64_t time_us) const;
 
   private:
-    void add_camera(bool right, const std::filesystem::path &folder);
+    void add_camera(bool right);
     void schedule_step(std::uint64_t time_us);
     void step();
     void serve_mac();
@@ -87,9 +84,8 @@ class EmulatedNode
     std::unique_ptr<tsr_node> node_;
     std::vector<std::uint64_t> arena_;
     std::size_t radio_ = 0;
-    std::vector<std::shared_ptr<RecordedFrames>> recordings_;
-    std::unique_ptr<RecordedCamera> left_;
-    std::unique_ptr<RecordedCamera> right_;
+    std::unique_ptr<SourceCamera> left_;
+    std::unique_ptr<SourceCamera> right_;
     std::uint64_t random_ = 0;
     std::uint64_t busy_until_us_ = 0;
     std::uint64_t step_at_us_ = UINT64_MAX;  /* the step that is scheduled */

@@ -16,10 +16,12 @@ namespace tsr
 /* Longest recording: 24 hours of virtual time. */
 inline constexpr std::uint64_t kRecordingMaxMs = 24ull * 3600 * 1000;
 
-/* Every camera has frames, every frame can be read, recordings end in time,
- * ground truth fits its pair, and the firmware takes each node's
- * configuration. Throws InputError. */
-void check_run(const Site &site, const KeyRing &keys);
+/* The firmware takes each node's configuration. Throws InputError. */
+void check_nodes(const Site &site, const KeyRing &keys);
+
+/* Every camera has frames, every frame can be read, recordings end in time, and ground truth fits its pair. Throws
+ * InputError. */
+void check_recorded(const Site &site);
 
 } // namespace tsr
 

@@ -40,8 +40,7 @@ struct ReceivedMap {
 };
 
 /* Reads sink.json in out and compares each map with ground truth. Throws InputError. */
-std::vector<ReceivedMap> read_received_maps(const Site &site, const Simulation &simulation,
-                                            const std::filesystem::path &out);
+std::vector<ReceivedMap> read_received_maps(const Site &site, Pictures &pictures, const std::filesystem::path &out);
 
 nlohmann::ordered_json make_summary(const Site &site, const Simulation &simulation,
                                     const std::vector<ReceivedMap> &maps, unsigned sink_restarts, double wall_time_s);

@@ -44,9 +44,8 @@ class Simulation
     /* Watching is most of a long run's timeline; past this many changes only the rest is noted. */
     static constexpr std::size_t kWatchingNotedMax = 20'000;
 
-    /* site, keys and sink are kept. Throws InputError for recordings or
-     * configurations that cannot be run. */
-    Simulation(const Site &site, const KeyRing &keys, SinkProcess &sink);
+    /* All are kept. Throws InputError for recordings or configurations that cannot be run. */
+    Simulation(const Site &site, const KeyRing &keys, Pictures &pictures, SinkProcess &sink);
     ~Simulation();
     Simulation(const Simulation &) = delete;
     Simulation &operator=(const Simulation &) = delete;
@@ -66,6 +65,7 @@ class Simulation
     static const tsr_port_ops kPortOps;
 
     const Site &site_;
+    Pictures &pictures_;
     SinkProcess &sink_;
     PowerModel power_;
     EventQueue queue_;

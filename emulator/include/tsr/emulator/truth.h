@@ -1,10 +1,6 @@
 /*
  * Maps against ground truth.
  *
- * A pair's truth is a folder of PFM disparities named like its frames: the
- * newest file whose name is not after a frame's name holds for that frame, so
- * a still scene needs one file.
- *
  * SPDX-License-Identifier: Apache-2.0
  */
 #ifndef TSR_EMULATOR_TRUTH_H
@@ -12,8 +8,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <optional>
-#include <string>
 
 #include "tsr/host/pfm.h"
 #include "tsr/host/site.h"
@@ -32,9 +26,6 @@ struct MapError {
     double median_mm = 0;            /* median |depth error|, Z = f B / (d + d0) */
     double median_depth_percent = 0; /* the same, of the true depth */
 };
-
-/* The truth file for a frame's file name, or nothing if none holds. */
-std::optional<std::filesystem::path> truth_file_for(const std::filesystem::path &folder, const std::string &frame_name);
 
 /* Throws InputError if the two differ in size. name stands for the truth in errors. */
 MapError compare_with_truth(const FloatImage &map, const FloatImage &truth, const SitePair &pair,

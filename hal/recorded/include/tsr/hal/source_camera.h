@@ -1,15 +1,15 @@
 /*
- * A camera that plays a folder of recorded frames (tsr/host/recorded_frames.h).
+ * A camera in virtual time, whose pictures come from a source
+ * (tsr/hal/frame_source.h).
  *
- * A capture at time t shows the newest frame not later than t, at once if t
- * has passed, and is done kExposureUs + kReadoutUs later. Time comes from
- * whoever owns the camera: it schedules the end of a capture and then calls
- * finish().
+ * A capture for time t begins then, or at once if t has passed, and is done kExposureUs +
+ * kReadoutUs later. Time comes from whoever owns the camera: it schedules the
+ * end of a capture and then calls finish().
  *
  * SPDX-License-Identifier: Apache-2.0
  */
-#ifndef TSR_HAL_RECORDED_CAMERA_H
-#define TSR_HAL_RECORDED_CAMERA_H
+#ifndef TSR_HAL_SOURCE_CAMERA_H
+#define TSR_HAL_SOURCE_CAMERA_H
 
 #include <cstdint>
 #include <functional>
@@ -18,12 +18,12 @@
 extern "C" {
 #include "tsr/hal/camera.h"
 }
-#include "tsr/host/recorded_frames.h"
+#include "tsr/hal/frame_source.h"
 
 namespace tsr
 {
 
-class RecordedCamera
+class SourceCamera
 {
   public:
     static constexpr std::uint64_t kExposureUs = 10'000;
@@ -37,28 +37,24 @@ class RecordedCamera
         std::function<void(tsr_status, std::uint64_t)> done;
     };
 
-    /* frames may be shared by several cameras. */
-    RecordedCamera(std::shared_ptr<RecordedFrames> frames, Owner owner);
-    RecordedCamera(const RecordedCamera &) = delete;
-    RecordedCamera &operator=(const RecordedCamera &) = delete;
+    SourceCamera(std::unique_ptr<FrameSource> source, Owner owner);
+    SourceCamera(const SourceCamera &) = delete;
+    SourceCamera &operator=(const SourceCamera &) = delete;
 
     tsr_camera camera() { return {&kOps, this}; }
     void finish();
 
     std::uint64_t captures() const { return captures_; }
-    /* Frame shown by the last finished capture. */
-    std::size_t last_index() const { return last_index_; }
 
   private:
     static tsr_status capture(void *self, tsr_gray image, std::uint64_t at_us);
     static const tsr_camera_ops kOps;
 
-    std::shared_ptr<RecordedFrames> frames_;
+    std::unique_ptr<FrameSource> source_;
     Owner owner_;
     tsr_gray image_{};
     std::uint64_t exposure_us_ = 0;
     std::uint64_t captures_ = 0;
-    std::size_t last_index_ = 0;
     bool busy_ = false;
 };
 

@@ -75,6 +75,8 @@ class TomlFile
   public:
     /* Reads and parses; throws InputError with the line of a syntax error. */
     explicit TomlFile(const std::filesystem::path &file);
+    /* Then each setting, "table.field = value" as TOML has it, in the place of what the file says. */
+    TomlFile(const std::filesystem::path &file, const std::vector<std::string> &settings);
     TomlFields top() const { return {table_, file_, ""}; }
 
   private:

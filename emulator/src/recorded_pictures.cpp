@@ -1,0 +1,60 @@
+/*
+ * Recorded frames and their ground truth.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include "tsr/emulator/recorded_pictures.h"
+
+#include <algorithm>
+
+#include "tsr/hal/recorded_source.h"
+
+namespace tsr
+{
+
+std::shared_ptr<RecordedFrames> RecordedPictures::frames(const std::filesystem::path &folder, std::uint32_t period_ms)
+{
+    auto &opened = opened_[{site_.resolve(folder), period_ms}];
+    if (!opened) {
+        opened = std::make_shared<RecordedFrames>(site_.resolve(folder), period_ms);
+        end_us_ = std::max(end_us_, opened->time_ms(opened->count() - 1) * 1000);
+    }
+    return opened;
+}
+
+std::unique_ptr<FrameSource> RecordedPictures::source(const SiteNode &node, bool right)
+{
+    const std::filesystem::path &folder = right ? node.frames_right : node.frames;
+    return folder.empty() ? nullptr : std::make_unique<RecordedSource>(frames(folder, node.watch_period_ms));
+}
+
+std::optional<PairTruth> RecordedPictures::truth(const SitePair &pair, std::uint64_t time_us)
+{
+    const SiteNode *node = site_.node(pair.lead);
+    if (pair.truth.empty() || node == nullptr || node->frames.empty()) {
+        return std::nullopt;
+    }
+    const auto shown = frames(node->frames, node->watch_period_ms);
+    const std::string frame_name = shown->file(shown->index_at(time_us / 1000)).filename().string();
+    const auto file = truth_file_for(site_.resolve(pair.truth), frame_name);
+    if (!file) {
+        return std::nullopt;
+    }
+    return PairTruth{read_pfm(*file), *file};
+}
+
+std::optional<std::filesystem::path> truth_file_for(const std::filesystem::path &folder, const std::string &frame_name)
+{
+    const std::string frame_stem = std::filesystem::path(frame_name).stem().string();
+    std::optional<std::filesystem::path> newest;
+    for (const auto &entry : std::filesystem::directory_iterator(folder)) {
+        const auto &file = entry.path();
+        if (file.extension() == ".pfm" && file.stem().string() <= frame_stem &&
+            (!newest || newest->stem().string() < file.stem().string())) {
+            newest = file;
+        }
+    }
+    return newest;
+}
+
+} // namespace tsr

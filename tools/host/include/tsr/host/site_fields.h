@@ -1,0 +1,21 @@
+/*
+ * Tables of site.toml that other files have too, docs/units.md, 2.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_HOST_SITE_FIELDS_H
+#define TSR_HOST_SITE_FIELDS_H
+
+#include "tsr/host/site.h"
+#include "tsr/host/toml_fields.h"
+
+namespace tsr
+{
+
+/* [radio] and [thresholds]: what the table gives, the rest unchanged. Throw InputError; unknown fields are refused. */
+void read_radio(TomlFields &fields, SiteRadio &radio);
+void read_thresholds(TomlFields &fields, SiteThresholds &limits);
+
+} // namespace tsr
+
+#endif

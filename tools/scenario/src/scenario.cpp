@@ -1,0 +1,158 @@
+/*
+ * scenario.toml to Scenario.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include "tsr/scenario/scenario.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "tsr/host/site_fields.h"
+
+namespace tsr
+{
+
+namespace
+{
+
+constexpr double kDayS = 86'400;
+
+/* A field that means nothing in this kind of scene is refused, as an unknown one. */
+bool has_people(const std::string &kind)
+{
+    return kind != "tank";
+}
+
+bool has_sun(const std::string &kind)
+{
+    return kind == "house" || kind == "car" || kind == "street";
+}
+
+void read_scene(TomlFields &fields, scene::SceneOptions &scene)
+{
+    scene.kind = fields.string("kind");
+    const auto &kinds = scene::scene_kinds();
+    if (std::find(kinds.begin(), kinds.end(), scene.kind) == kinds.end()) {
+        std::string known;
+        for (const std::string &kind : kinds) {
+            known += (known.empty() ? "" : ", ") + kind;
+        }
+        fields.refuse("kind", "'" + scene.kind + "' is none of " + known);
+    }
+    scene.clutter = fields.number("clutter", 0, 3, scene.clutter);
+    scene.light_drift = fields.number("light_drift", 0, 0.9, scene.light_drift);
+    scene.light_period_s = fields.number("light_period_s", 1, kDayS, scene.light_period_s);
+    if (has_people(scene.kind)) {
+        scene.people = static_cast<int>(fields.integer("people", 0, 20, scene.people));
+    }
+    if (scene.kind == "street") {
+        scene.cars = static_cast<int>(fields.integer("cars", 0, 20, scene.cars));
+    }
+    if (has_sun(scene.kind)) {
+        scene.sun_hours = fields.number("sun_hours", 0, 6, scene.sun_hours);
+    }
+    if (scene.kind == "tank") {
+        scene.level_step_m = fields.number("level_step_m", 0.01, 0.8, scene.level_step_m);
+        scene.level_rate_m_s = fields.number("level_rate_m_s", 0.0001, 1, scene.level_rate_m_s);
+    }
+    fields.refuse_unknown();
+}
+
+void read_layout(TomlFields &fields, scene::LayoutOptions &layout)
+{
+    layout.count = static_cast<int>(fields.integer("count", 1, 2000, layout.count));
+    layout.distance_m = fields.number("distance_m", 0, 1000, layout.distance_m);
+    std::array<double, 2> heights{};
+    fields.numbers("heights_m", heights.data(), heights.size(), false);
+    layout.height_low_m = heights[0];
+    layout.height_high_m = heights[1];
+    if (fields.has("heights_m") && !(heights[0] >= 0.1 && heights[0] <= heights[1] && heights[1] <= 100)) {
+        fields.refuse("heights_m", "is not the lowest and the highest, 0.1 .. 100 m");
+    }
+}
+
+void read_pairs(TomlFields &fields, ScenarioPairs &pairs)
+{
+    read_layout(fields, pairs.layout);
+    const std::string boards = fields.string("boards", "one");
+    if (boards != "one" && boards != "two") {
+        fields.refuse("boards", "'" + boards + "' is neither one nor two");
+    }
+    pairs.two_boards = boards == "two";
+    pairs.width = static_cast<int>(fields.integer("width", 16, 640, pairs.width));
+    pairs.height = static_cast<int>(fields.integer("height", 16, 480, pairs.height));
+    pairs.disparities = static_cast<int>(fields.integer("disparities", 16, 128, pairs.width > 160 ? 64 : 32));
+    pairs.search_start_px = static_cast<int>(fields.integer("search_start_px", -640, 640, pairs.search_start_px));
+    pairs.fov_deg = fields.has("fov_deg") ? fields.number("fov_deg", 10, 150) : 0;
+    pairs.baseline_mm = fields.number("baseline_mm", 1, 10'000, pairs.baseline_mm);
+    pairs.angle_deg = fields.number("angle_deg", -180, 180, pairs.angle_deg);
+    if (pairs.angle_deg < 0) {
+        fields.refuse("angle_deg", "is below 0: the cameras of a pair face apart");
+    }
+    pairs.watch_period_ms =
+        static_cast<std::uint32_t>(fields.integer("watch_period_ms", 1, kWatchPeriodMsMax, pairs.watch_period_ms));
+    pairs.step_px = fields.number("step_px", 0.0625, 1, pairs.step_px);
+    pairs.reference_image = fields.boolean("reference_image", pairs.reference_image);
+    pairs.reference_step = static_cast<int>(fields.integer("reference_step", 0, 63, pairs.reference_step));
+    fields.refuse_unknown();
+}
+
+void read_camera(TomlFields &fields, ScenarioCamera &camera)
+{
+    const auto number = [&](const char *field, double minimum, double maximum, float &value) {
+        value = static_cast<float>(fields.number(field, minimum, maximum, static_cast<double>(value)));
+    };
+    scene::SensorModel &sensor = camera.sensor;
+    sensor.noise = fields.boolean("noise", sensor.noise);
+    number("full_well_e", 100, 1e6, sensor.full_well_e);
+    number("read_noise_e", 0, 1000, sensor.read_noise_e);
+    number("vignetting", 0, 1, sensor.vignetting);
+    sensor.exposure_control = fields.boolean("exposure_control", sensor.exposure_control);
+    number("wanted_mean", 16, 240, sensor.wanted_mean);
+    number("gain_max", 1, 64, sensor.gain_max);
+    fields.numbers("distortion", camera.distortion.data(), camera.distortion.size(), false);
+    camera.rolling_shutter_ms = fields.number("rolling_shutter_ms", 0, 1000, camera.rolling_shutter_ms);
+    camera.jitter_us = fields.number("jitter_us", 0, 100'000, camera.jitter_us);
+    fields.refuse_unknown();
+}
+
+template <typename Read, typename Value> void read_table(TomlFields &top, const char *name, Read read, Value &value)
+{
+    if (auto fields = top.table(name)) {
+        read(*fields, value);
+    }
+}
+
+} // namespace
+
+bool is_scenario_file(const std::filesystem::path &file)
+{
+    const TomlFile toml(file);
+    return toml.top().has("scene");
+}
+
+Scenario load_scenario(const std::filesystem::path &file, const std::vector<std::string> &settings)
+{
+    const TomlFile toml(file, settings);
+    TomlFields top = toml.top();
+    Scenario scenario;
+    scenario.file = file;
+    scenario.name = top.string("name");
+    scenario.seed = static_cast<std::uint64_t>(
+        top.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), static_cast<std::int64_t>(scenario.seed)));
+    scenario.scene.duration_s = top.number("duration_s", 10, kDayS, scenario.scene.duration_s);
+    scenario.scene.seed = scenario.seed;
+    if (!top.has("scene")) {
+        top.refuse("scene", "is missing");
+    }
+    read_table(top, "scene", read_scene, scenario.scene);
+    read_table(top, "pairs", read_pairs, scenario.pairs);
+    read_table(top, "camera", read_camera, scenario.camera);
+    read_table(top, "radio", read_radio, scenario.radio);
+    read_table(top, "thresholds", read_thresholds, scenario.thresholds);
+    top.refuse_unknown();
+    return scenario;
+}
+
+} // namespace tsr

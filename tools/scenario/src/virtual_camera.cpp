@@ -1,0 +1,75 @@
+/*
+ * Captures of a virtual scene.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include "tsr/scenario/virtual_camera.h"
+
+#include <cmath>
+
+namespace tsr
+{
+
+namespace
+{
+
+/* SplitMix64 (Steele, Lea, Flood, OOPSLA 2014). */
+std::uint64_t mix(std::uint64_t value)
+{
+    value += 0x9e3779b97f4a7c15U;
+    value = (value ^ value >> 30) * 0xbf58476d1ce4e5b9U;
+    value = (value ^ value >> 27) * 0x94d049bb133111ebU;
+    return value ^ value >> 31;
+}
+
+scene::SensorModel seeded(scene::SensorModel model, std::uint64_t seed)
+{
+    model.seed = seed;
+    return model;
+}
+
+std::uint64_t seed_of(const Scenario &scenario, const StagedCamera &camera)
+{
+    return mix(mix(scenario.seed) + 2u * camera.node + (camera.right ? 1u : 0u));
+}
+
+} // namespace
+
+VirtualCamera::VirtualCamera(const Scenario &scenario, const Staging &staging, const StagedCamera &camera)
+    : staging_(staging), view_(*staging.geometry, camera.camera),
+      sensor_(seeded(scenario.camera.sensor, seed_of(scenario, camera))), last_sensor_(sensor_),
+      seed_(seed_of(scenario, camera)),
+      jitter_us_(camera.right ? static_cast<std::uint64_t>(std::llround(scenario.camera.jitter_us)) : 0)
+{
+}
+
+std::uint64_t VirtualCamera::jittered(std::uint64_t time_us) const
+{
+    const std::uint64_t late = mix(seed_ ^ time_us) % (2 * jitter_us_ + 1);
+    return time_us + late < jitter_us_ ? 0 : time_us + late - jitter_us_;
+}
+
+void VirtualCamera::capture(scene::RayCaster &caster, std::uint64_t time_us, const tsr_gray &image)
+{
+    if (master_ != nullptr) {
+        sensor_.follow(master_->last_us_ == time_us ? master_->last_sensor_ : master_->sensor_);
+    }
+    last_sensor_ = sensor_;
+    last_us_ = time_us;
+    const std::uint64_t exposed_us = jittered(time_us);
+    const scene::Layers &layers = view_.render(caster, exposed_us);
+    sensor_.expose(view_.camera(), layers, staging_.scene->world.light_at(exposed_us), image);
+}
+
+FloatImage true_disparity(const SitePair &pair, const scene::Truth &truth)
+{
+    FloatImage image{pair.width, pair.height, {}};
+    const double focal_baseline = pair.focal_px * pair.baseline_mm / 1000;
+    for (const float depth_m : truth.depth_m) {
+        image.pixels.push_back(depth_m > 0 ? static_cast<float>(focal_baseline / static_cast<double>(depth_m) - pair.d0_px)
+                                           : kFloatInvalid);
+    }
+    return image;
+}
+
+} // namespace tsr
