@@ -52,15 +52,15 @@ std::string shown(double value)
     return {text.data(), result.ptr};
 }
 
-/* Tables are joined, everything else is replaced. */
-void overwrite(toml::table &table, const toml::table &by)
+/* Tables are joined, everything else is replaced. Values are moved: toml++ forgets where a copied one stood. */
+void overwrite(toml::table &table, toml::table by)
 {
-    for (const auto &[key, value] : by) {
+    for (auto &&[key, value] : by) {
         toml::table *inner = table[key].as_table();
         if (inner != nullptr && value.is_table()) {
-            overwrite(*inner, *value.as_table());
+            overwrite(*inner, std::move(*value.as_table()));
         } else {
-            table.insert_or_assign(key, value);
+            value.visit([&](auto &concrete) { table.insert_or_assign(key, std::move(concrete)); });
         }
     }
 }

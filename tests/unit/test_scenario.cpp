@@ -1,0 +1,121 @@
+/*
+ * Scenario files: what they say, what is refused, how nodes are joined.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#include <fstream>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "test_host_folder.h"
+#include "tsr/host/input_error.h"
+#include "tsr/scenario/staging.h"
+
+namespace
+{
+
+using tsr::Role;
+using tsr::Scenario;
+
+class ScenarioFile : public testing::Test
+{
+  protected:
+    std::filesystem::path write(const std::string &text)
+    {
+        const auto file = folder_.path() / "scenario.toml";
+        std::ofstream(file) << text;
+        return file;
+    }
+    std::string refusal(const std::string &text, const std::vector<std::string> &settings = {})
+    {
+        try {
+            tsr::stage_scenario(tsr::load_scenario(write(text), settings));
+        } catch (const tsr::InputError &error) {
+            const std::string what = error.what();
+            return what.substr(what.find("scenario.toml"));
+        }
+        return "";
+    }
+
+    tsr::test::Folder folder_;
+};
+
+constexpr const char *kTank = "name = \"t\"\nduration_s = 20\n[scene]\nkind = \"tank\"\n";
+
+TEST_F(ScenarioFile, HasDefaultsAndTakesSettings)
+{
+    const Scenario plain = tsr::load_scenario(write(kTank), {});
+    EXPECT_EQ(plain.pairs.layout.count, 7);
+    EXPECT_EQ(plain.scene.duration_s, 20);
+    const Scenario set = tsr::load_scenario(write(kTank), {"pairs.count=3", "scene.level_step_m = 0.5", "seed=9"});
+    EXPECT_EQ(set.pairs.layout.count, 3);
+    EXPECT_EQ(set.scene.level_step_m, 0.5);
+    EXPECT_EQ(set.seed, 9u);
+    EXPECT_TRUE(tsr::is_scenario_file(write(kTank)));
+    EXPECT_FALSE(tsr::is_scenario_file(write("[site]\nname = \"s\"\n")));
+}
+
+TEST_F(ScenarioFile, RefusesByLineAndField)
+{
+    EXPECT_EQ(refusal("name = \"t\"\n"), "scenario.toml:1: scene: is missing");
+    EXPECT_EQ(refusal("name = \"t\"\n[scene]\nkind = \"moon\"\n").substr(0, 48),
+              "scenario.toml:3: scene.kind: 'moon' is none of b");
+    EXPECT_EQ(refusal(std::string(kTank) + "lids = 3\n"), "scenario.toml:5: scene.lids: unknown field");
+    EXPECT_EQ(refusal(std::string(kTank) + "people = 3\n"), "scenario.toml:5: scene.people: unknown field");
+    EXPECT_EQ(refusal("name = \"t\"\nduration_s = -1\n[scene]\nkind = \"tank\"\n").substr(0, 29),
+              "scenario.toml:2: duration_s: ");
+    EXPECT_EQ(refusal(std::string(kTank) + "[pairs]\nangle_deg = -5\n"),
+              "scenario.toml:6: pairs.angle_deg: is below 0: the cameras of a pair face apart");
+}
+
+TEST_F(ScenarioFile, ASettingIsNamedInItsRefusal)
+{
+    try {
+        tsr::load_scenario(write(kTank), {"pairs.count=0"});
+        FAIL();
+    } catch (const tsr::InputError &error) {
+        EXPECT_EQ(std::string(error.what()).substr(0, 34), "--set 'pairs.count=0': pairs.count");
+    }
+}
+
+TEST_F(ScenarioFile, RefusesImpossibleGeometry)
+{
+    EXPECT_NE(refusal(std::string(kTank) + "[pairs]\ncount = 4\ndistance_m = 1.25\nheights_m = [0.8, 0.8]\n").find("is inside the"),
+              std::string::npos);
+    EXPECT_NE(refusal(std::string(kTank) + "[pairs]\nangle_deg = 70\n").find("share less than a fifth"), std::string::npos);
+    EXPECT_NE(refusal(std::string(kTank) + "[camera]\ndistortion = [-3, 0, 0, 0]\n").find("the image folds"), std::string::npos);
+}
+
+TEST_F(ScenarioFile, JoinsABinaryTree)
+{
+    for (const char *boards : {"one", "two"}) {
+        const auto staging = tsr::stage_scenario(
+            tsr::load_scenario(write(kTank), {"pairs.count=15", std::string("pairs.boards=\"") + boards + "\""}));
+        std::map<std::uint16_t, int> children;
+        for (const tsr::SiteNode &node : staging.site.nodes) {
+            if (node.role == Role::wing) {
+                EXPECT_EQ(node.parent, node.id - 1);
+            } else if (node.role != Role::gateway) {
+                ++children[node.parent];
+            }
+        }
+        for (const auto &[parent, count] : children) {
+            EXPECT_LE(count, 2) << parent;
+        }
+        EXPECT_EQ(staging.site.pairs.size(), 15u);
+        EXPECT_EQ(staging.cameras.size(), 30u);
+        EXPECT_EQ(staging.site.nodes.size(), std::string(boards) == "one" ? 16u : 31u);
+    }
+}
+
+/* The axes meet: a point where they do has disparity 0 after d0 is added. */
+TEST_F(ScenarioFile, TheAngleBecomesAnOffset)
+{
+    const auto staging = tsr::stage_scenario(tsr::load_scenario(write(kTank), {"pairs.angle_deg=2.0"}));
+    const tsr::SitePair &pair = staging.site.pairs.front();
+    const double meet_m = pair.baseline_mm / 1000 / std::tan(2.0 * 3.14159265358979 / 180);
+    EXPECT_NEAR(pair.focal_px * pair.baseline_mm / 1000 / meet_m - pair.d0_px, 0, 1e-6);
+}
+
+} // namespace
