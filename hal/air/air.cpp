@@ -6,6 +6,7 @@
 #include "tsr/hal/air.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -92,7 +93,7 @@ const tsr_radio_ops Air::kOps = {&Air::configure, &Air::set_receiving, &Air::tra
 Air::Air(const AirModel &model, Clock clock)
     : seed_(model.seed), cca_at_end_(model.cca_at_end), propagation_(model), receivers_(model),
       neighbours_(propagation_, receivers_.floor_q4()),
-      kept_q32_(static_cast<std::uint64_t>((1 - model.frame_loss) * static_cast<double>(kCertainQ32) + 0.5)),
+      kept_q32_(static_cast<std::uint64_t>(std::llround((1 - model.frame_loss) * static_cast<double>(kCertainQ32)))),
       clock_(std::move(clock))
 {
 }

@@ -23,7 +23,7 @@ const PowerTable &powers()
     static const PowerTable table = [] {
         PowerTable made{};
         for (std::size_t i = 0; i < made.size(); ++i) {
-            made[i] = static_cast<std::uint64_t>(ratio_of(static_cast<double>(i) / 16) + 0.5);
+            made[i] = static_cast<std::uint64_t>(std::llround(ratio_of(static_cast<double>(i) / 16)));
         }
         return made;
     }();

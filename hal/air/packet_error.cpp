@@ -2,6 +2,7 @@
 #include "tsr/hal/air/packet_error.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "tsr/hal/air/decibel.h"
@@ -30,7 +31,7 @@ PacketError::PacketError()
     for (std::size_t i = 0; i < bit_success_q32_.size(); ++i) {
         const double sinr_db = (static_cast<int>(i) + kLowestQ4) / 16.0;
         const double success = 1 - bit_error_rate(ratio_of(sinr_db));
-        bit_success_q32_[i] = static_cast<std::uint64_t>(success * static_cast<double>(kCertainQ32) + 0.5);
+        bit_success_q32_[i] = static_cast<std::uint64_t>(std::llround(success * static_cast<double>(kCertainQ32)));
     }
     constexpr std::uint64_t kBits = 8 * (TSR_RADIO_PHY_HEADER_OCTETS + 20);
     while (success_q32(sensitivity_sinr_q4_, kBits) < kCertainQ32 / 100 * 99) {
