@@ -72,7 +72,7 @@ struct Air::Radio {
     bool busy = false;              /* between transmit() and TX_DONE */
     std::vector<std::uint8_t> psdu; /* of the transmit() under way */
     std::uint64_t attempt = 0;      /* counts transmit() calls */
-    Receiver receiver;
+    air::Receiver receiver;
     mutable AirTimes times;
     mutable std::uint64_t accounted_us = 0;
 };
@@ -93,7 +93,8 @@ const tsr_radio_ops Air::kOps = {&Air::configure, &Air::set_receiving, &Air::tra
 Air::Air(const AirModel &model, Clock clock)
     : seed_(model.seed), cca_at_end_(model.cca_at_end), propagation_(model), receivers_(model),
       neighbours_(propagation_, receivers_.floor_q4()),
-      kept_q32_(static_cast<std::uint64_t>(std::llround((1 - model.frame_loss) * static_cast<double>(kCertainQ32)))),
+      kept_q32_(
+          static_cast<std::uint64_t>(std::llround((1 - model.frame_loss) * static_cast<double>(air::kCertainQ32)))),
       clock_(std::move(clock))
 {
 }
@@ -114,9 +115,9 @@ tsr_radio Air::radio(std::size_t index)
 
 int Air::rssi_dbm(std::size_t from, std::size_t to) const
 {
-    for (const Link &link : neighbours_.of(from)) {
+    for (const air::Link &link : neighbours_.of(from)) {
         if (link.radio == to) {
-            return to_dbm(link.mean_q4);
+            return air::to_dbm(link.mean_q4);
         }
     }
     return kSilentDbm;
@@ -222,12 +223,12 @@ std::shared_ptr<Air::Transmission> Air::begin(Radio &sender, std::vector<std::ui
 
 void Air::arrive(const Transmission &transmission)
 {
-    Signal signal;
+    air::Signal signal;
     signal.number = transmission.number;
     signal.start_us = transmission.start_us;
     signal.end_us = transmission.end_us;
     signal.channel = transmission.channel;
-    for (const Link &link : neighbours_.of(transmission.sender)) {
+    for (const air::Link &link : neighbours_.of(transmission.sender)) {
         signal.level_q4 = link.mean_q4 + propagation_.fading_q4(transmission.sender, link.radio, transmission.start_us);
         radios_[link.radio]->receiver.begin(signal);
         ++arrivals_;
@@ -238,9 +239,9 @@ void Air::arrive(const Transmission &transmission)
 std::vector<Air::Receipt> Air::leave(const Transmission &transmission)
 {
     std::vector<Receipt> heard;
-    for (const Link &link : neighbours_.of(transmission.sender)) {
+    for (const air::Link &link : neighbours_.of(transmission.sender)) {
         Radio &radio = *radios_[link.radio];
-        const Outcome outcome = radio.receiver.end(transmission.number, clock_.now_us());
+        const air::Outcome outcome = radio.receiver.end(transmission.number, clock_.now_us());
         if (chance_keeps(transmission, radio.index, outcome.success_q32)) {
             heard.push_back({&radio, outcome.level_q4});
         }
@@ -274,8 +275,8 @@ void Air::send_ack(Radio &radio, Radio &to, std::uint8_t sequence, std::uint64_t
 
 bool Air::chance_keeps(const Transmission &transmission, std::size_t receiver, std::uint64_t success_q32) const
 {
-    const std::uint64_t draw = mix(mix(seed_ + transmission.number) + receiver);
-    return (draw >> 32) < both_q32(success_q32, kept_q32_);
+    const std::uint64_t draw = air::mix(air::mix(seed_ + transmission.number) + receiver);
+    return (draw >> 32) < air::both_q32(success_q32, kept_q32_);
 }
 
 void Air::deliver(const Receipt &receipt, const Transmission &transmission)
@@ -285,7 +286,7 @@ void Air::deliver(const Receipt &receipt, const Transmission &transmission)
     event.time_us = transmission.end_us;
     event.received.psdu = transmission.psdu.data();
     event.received.psdu_len = static_cast<std::uint8_t>(transmission.psdu.size());
-    event.received.rssi_dbm = static_cast<std::int8_t>(std::clamp(to_dbm(receipt.level_q4), -128, 127));
+    event.received.rssi_dbm = static_cast<std::int8_t>(std::clamp(air::to_dbm(receipt.level_q4), -128, 127));
     receipt.radio->handler(event);
 }
 
@@ -325,7 +326,7 @@ void Air::end_ack(const Transmission &transmission, AirFrame frame, AirFate fate
 std::uint64_t Air::broadcast_losses(const Transmission &transmission, std::uint64_t got) const
 {
     const auto &links = neighbours_.of(transmission.sender);
-    const auto meant = std::count_if(links.begin(), links.end(), [&](const Link &link) {
+    const auto meant = std::count_if(links.begin(), links.end(), [&](const air::Link &link) {
         return radios_[link.radio]->pan_id == pan_of(transmission.psdu);
     });
     return static_cast<std::uint64_t>(meant) - got;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace tsr
+namespace tsr::air
 {
 namespace
 {
@@ -92,4 +92,4 @@ int level_of(std::uint64_t power)
     return kLowestQ4 + std::max(static_cast<int>(above - powers().begin()) - 1, 0);
 }
 
-} // namespace tsr
+} // namespace tsr::air

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tsr
+namespace tsr::air
 {
 
 /* Cells are as wide as the longest link, so both ends are in the same cell or in two that touch. */
@@ -44,4 +44,4 @@ std::size_t Neighbours::add(const Position &position_m)
     return added;
 }
 
-} // namespace tsr
+} // namespace tsr::air

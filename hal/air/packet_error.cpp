@@ -11,7 +11,7 @@ extern "C" {
 #include "tsr/hal/radio.h"
 }
 
-namespace tsr
+namespace tsr::air
 {
 
 double bit_error_rate(double sinr)
@@ -53,4 +53,4 @@ std::uint64_t PacketError::success_q32(int sinr_q4, std::uint64_t bits) const
     return result;
 }
 
-} // namespace tsr
+} // namespace tsr::air

@@ -6,7 +6,7 @@
 #include "tsr/hal/air/chance.h"
 #include "tsr/hal/air/decibel.h"
 
-namespace tsr
+namespace tsr::air
 {
 namespace
 {
@@ -83,4 +83,4 @@ double Propagation::range_m(int dbm_q4) const
     return std::max(ratio_of(decades_db), kNearestM);
 }
 
-} // namespace tsr
+} // namespace tsr::air

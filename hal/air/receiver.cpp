@@ -9,7 +9,7 @@ extern "C" {
 #include "tsr/hal/radio.h"
 }
 
-namespace tsr
+namespace tsr::air
 {
 namespace
 {
@@ -136,4 +136,4 @@ void Receiver::sense(std::uint64_t now_us)
     found_ = energy >= model_->cca_threshold || (locked_ && followed_.end_us > now_us);
 }
 
-} // namespace tsr
+} // namespace tsr::air

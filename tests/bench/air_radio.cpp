@@ -51,7 +51,7 @@ Air::Clock clock_of(EventQueue &queue)
 /* Capture at which a frame counts as noise of its level. */
 double capture_as_noise_db()
 {
-    return PacketError().sensitivity_sinr_q4() / 16.0;
+    return air::PacketError().sensitivity_sinr_q4() / 16.0;
 }
 
 /* A frame from one radio to another, whose level above the noise is the SNR. */
@@ -112,11 +112,11 @@ class Station
   public:
     Station(const Contention &contention, EventQueue &queue, Counts &counts, std::uint16_t address)
         : contention_(contention), queue_(queue), counts_(counts), address_(address),
-          random_(mix(mix(contention.seed) + address))
+          random_(air::mix(air::mix(contention.seed) + address))
     {
     }
 
-    void start(Air &air, const Position &position_m, const tsr_cipher &cipher)
+    void start(Air &air, const air::Position &position_m, const tsr_cipher &cipher)
     {
         const std::size_t radio = air.add_radio(position_m, [this](const tsr_radio_event &event) {
             tsr_mac_on_radio(&mac_, &event, queue_.now_us());
@@ -173,7 +173,7 @@ class Station
     {
         auto &station = *static_cast<Station *>(self);
         for (std::size_t i = 0; i < len; ++i) {
-            bytes[i] = static_cast<std::uint8_t>(mix(station.random_++));
+            bytes[i] = static_cast<std::uint8_t>(air::mix(station.random_++));
         }
     }
     static constexpr tsr_entropy_ops kEntropyOps = {&Station::fill};
@@ -205,7 +205,8 @@ int contend(const Contention &contention)
         stations.push_back(std::make_unique<Station>(contention, queue, counts, address));
         const double angle = 2 * std::numbers::pi * i / contention.contenders;
         stations.back()->start(
-            air, i == 0 ? Position{} : Position{kRadiusM * std::cos(angle), kRadiusM * std::sin(angle), 0}, cipher);
+            air, i == 0 ? air::Position{} : air::Position{kRadiusM * std::cos(angle), kRadiusM * std::sin(angle), 0},
+            cipher);
     }
     const auto end_us = static_cast<std::uint64_t>((1 + contention.seconds) * kSecondUs);
     while (!queue.empty() && queue.next_us() <= end_us) {

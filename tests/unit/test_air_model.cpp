@@ -20,6 +20,8 @@ namespace tsr
 namespace
 {
 
+using namespace air;
+
 TEST(AirDecibel, AgreesWithTheCLibrary)
 {
     for (double x = -300; x < 40; x += 0.37) {

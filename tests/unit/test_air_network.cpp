@@ -15,6 +15,8 @@ namespace tsr
 namespace
 {
 
+using namespace air;
+
 constexpr std::uint16_t kPan = 0xbeef;
 constexpr std::uint16_t kBroadcast = 0xffff;
 

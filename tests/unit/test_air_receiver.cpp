@@ -13,6 +13,8 @@ namespace tsr
 namespace
 {
 
+using namespace air;
+
 constexpr std::uint8_t kChannel = 15;
 constexpr std::uint64_t kFrameUs = 66 * 32; /* 60 octets */
 constexpr double kWithoutDoubt = 0.999;

@@ -122,9 +122,9 @@ class Air
 
     std::uint64_t seed_;
     bool cca_at_end_;
-    Propagation propagation_;
-    ReceiverModel receivers_;
-    Neighbours neighbours_;
+    air::Propagation propagation_;
+    air::ReceiverModel receivers_;
+    air::Neighbours neighbours_;
     std::uint64_t kept_q32_; /* part of the frames that frame_loss leaves */
     Clock clock_;
     Tap tap_;

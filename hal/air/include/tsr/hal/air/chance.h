@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace tsr
+namespace tsr::air
 {
 
 /* SplitMix64 (Steele, Lea, Flood, OOPSLA 2014). */
@@ -42,6 +42,6 @@ constexpr std::int32_t normal_q16(std::uint64_t key)
     return std::clamp(sum - kMean, -kNormalMax * 65536, kNormalMax * 65536);
 }
 
-} // namespace tsr
+} // namespace tsr::air
 
 #endif

@@ -16,7 +16,7 @@
 
 #include <cstdint>
 
-namespace tsr
+namespace tsr::air
 {
 
 double exponential(double x);
@@ -27,6 +27,6 @@ int to_dbm(int level_q4);           /* whole, likewise */
 std::uint64_t power_of(int dbm_q4); /* 1 at -150 dBm and below */
 int level_of(std::uint64_t power);  /* the nearest level below or equal, -150 .. +20 dBm */
 
-} // namespace tsr
+} // namespace tsr::air
 
 #endif

@@ -15,7 +15,7 @@
 
 #include "tsr/hal/air/propagation.h"
 
-namespace tsr
+namespace tsr::air
 {
 
 struct Link {
@@ -48,6 +48,6 @@ class Neighbours
     std::map<Cell, std::vector<std::uint32_t>> cells_;
 };
 
-} // namespace tsr
+} // namespace tsr::air
 
 #endif

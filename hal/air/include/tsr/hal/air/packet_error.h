@@ -14,7 +14,7 @@
 #include <array>
 #include <cstdint>
 
-namespace tsr
+namespace tsr::air
 {
 
 inline constexpr std::uint64_t kCertainQ32 = std::uint64_t{1} << 32;
@@ -45,6 +45,6 @@ class PacketError
     int sensitivity_sinr_q4_ = kLowestQ4;
 };
 
-} // namespace tsr
+} // namespace tsr::air
 
 #endif

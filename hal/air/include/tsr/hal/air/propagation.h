@@ -19,7 +19,7 @@
 
 #include "tsr/hal/air/model.h"
 
-namespace tsr
+namespace tsr::air
 {
 
 using Position = std::array<double, 3>; /* m */
@@ -44,6 +44,6 @@ class Propagation
     std::uint64_t period_us_;
 };
 
-} // namespace tsr
+} // namespace tsr::air
 
 #endif

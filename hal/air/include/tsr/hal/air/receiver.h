@@ -23,7 +23,7 @@
 #include "tsr/hal/air/model.h"
 #include "tsr/hal/air/packet_error.h"
 
-namespace tsr
+namespace tsr::air
 {
 
 /* The model's receiver as integers, one for all radios. */
@@ -92,6 +92,6 @@ class Receiver
     std::uint64_t success_q32_ = 0;
 };
 
-} // namespace tsr
+} // namespace tsr::air
 
 #endif
