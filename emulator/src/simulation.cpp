@@ -19,7 +19,12 @@ AirModel air_model(const Site &site)
     model.tx_power_dbm = site.radio.tx_power_dbm;
     model.reference_loss_db = site.radio.reference_loss_db;
     model.path_loss_exponent = site.radio.path_loss_exponent;
+    model.shadowing_db = site.radio.shadowing_db;
+    model.fading_db = site.radio.fading_db;
+    model.fading_period_ms = site.radio.fading_period_ms;
     model.sensitivity_dbm = site.radio.sensitivity_dbm;
+    model.capture_db = site.radio.capture_db;
+    model.cca_threshold_dbm = site.radio.cca_threshold_dbm;
     model.frame_loss = site.radio.frame_loss;
     model.seed = site.seed;
     return model;

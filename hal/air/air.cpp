@@ -1,5 +1,5 @@
 /*
- * The radio medium: transmissions, overlap, chance, acknowledgements.
+ * The radio medium: radios, their transmissions and acknowledgements.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -7,7 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
+
+#include "tsr/hal/air/chance.h"
+#include "tsr/hal/air/decibel.h"
 
 namespace tsr
 {
@@ -19,15 +23,6 @@ constexpr std::uint16_t kBroadcast = 0xffff;
 constexpr std::size_t kAddressedLen = 9; /* up to the source address: shorter ones are for nobody */
 constexpr std::uint8_t kTypeAck = 0x02;  /* frame control field, IEEE 802.15.4-2015, 7.2.2.1 */
 constexpr std::uint8_t kAckRequest = 0x20;
-
-/* SplitMix64 (Steele, Lea, Flood, OOPSLA 2014). */
-std::uint64_t mix(std::uint64_t z)
-{
-    z += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-}
 
 /* CRC of IEEE 802.15.4-2015, 7.2.11, as the radio appends it to its acknowledgements. */
 std::uint16_t fcs(const std::vector<std::uint8_t> &bytes, std::size_t len)
@@ -47,24 +42,37 @@ std::uint64_t duration_us(std::size_t psdu_len)
     return (TSR_RADIO_PHY_HEADER_OCTETS + psdu_len) * std::uint64_t{TSR_RADIO_OCTET_US};
 }
 
+unsigned pan_of(const std::vector<std::uint8_t> &psdu)
+{
+    return psdu[3] | psdu[4] << 8;
+}
+
+unsigned destination_of(const std::vector<std::uint8_t> &psdu)
+{
+    return psdu[5] | psdu[6] << 8;
+}
+
 } // namespace
 
 struct Air::Radio {
-    Air *air = nullptr;
-    std::size_t index = 0;
-    std::array<double, 3> position_m{};
+    Radio(Air &medium, std::size_t index_in_it, EventHandler owner)
+        : air(&medium), index(index_in_it), handler(std::move(owner)), receiver(medium.receivers_)
+    {
+    }
+
+    Air *air;
+    std::size_t index;
     EventHandler handler;
     std::uint8_t channel = 0;
     std::uint16_t pan_id = 0;
     std::uint16_t address = 0;
     bool receiving = false;
-    bool sending = false;                 /* its own PSDU is on air */
-    bool busy = false;                    /* between transmit() and TX_DONE */
-    std::uint64_t listening_since_us = 0; /* neither asleep nor sending since then */
-    std::vector<std::uint8_t> psdu;       /* of the transmit() under way */
-    std::uint64_t frame_end_us = 0;
-    std::uint64_t attempt = 0; /* counts transmit() calls */
-    std::vector<int> rssi_dbm; /* heard from each radio, filled lazily by index */
+    bool turning = false;           /* from a clear channel to the transmission: deaf */
+    bool sending = false;           /* its own PSDU is on air */
+    bool busy = false;              /* between transmit() and TX_DONE */
+    std::vector<std::uint8_t> psdu; /* of the transmit() under way */
+    std::uint64_t attempt = 0;      /* counts transmit() calls */
+    air::Receiver receiver;
     mutable AirTimes times;
     mutable std::uint64_t accounted_us = 0;
 };
@@ -76,16 +84,18 @@ struct Air::Transmission {
     std::uint64_t start_us = 0;
     std::uint64_t end_us = 0;
     std::vector<std::uint8_t> psdu;
-    std::vector<std::size_t> overlaps; /* senders of transmissions that overlapped this one */
-    Radio *acknowledges = nullptr;     /* an acknowledgement's addressee */
-    std::uint64_t frame_end_us = 0;    /* of the frame it acknowledges */
+    Radio *acknowledges = nullptr;  /* an acknowledgement's addressee */
+    std::uint64_t frame_end_us = 0; /* of the frame it acknowledges */
 };
 
 const tsr_radio_ops Air::kOps = {&Air::configure, &Air::set_receiving, &Air::transmit};
 
 Air::Air(const AirModel &model, Clock clock)
-    : model_(model), clock_(std::move(clock)),
-      loss_q16_(static_cast<std::uint32_t>(std::lround(model.frame_loss * 65536)))
+    : seed_(model.seed), cca_at_end_(model.cca_at_end), propagation_(model), receivers_(model),
+      neighbours_(propagation_, receivers_.floor_q4()),
+      kept_q32_(
+          static_cast<std::uint64_t>(std::llround((1 - model.frame_loss) * static_cast<double>(air::kCertainQ32)))),
+      clock_(std::move(clock))
 {
 }
 
@@ -93,26 +103,9 @@ Air::~Air() = default;
 
 std::size_t Air::add_radio(const std::array<double, 3> &position_m, EventHandler handler)
 {
-    auto radio = std::make_unique<Radio>();
-    radio->air = this;
-    radio->index = radios_.size();
-    radio->position_m = position_m;
-    radio->handler = std::move(handler);
-    for (const auto &other : radios_) {
-        double squared = 0;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            squared += std::pow(position_m[axis] - other->position_m[axis], 2);
-        }
-        const double distance_m = std::max(std::sqrt(squared), 0.1);
-        const double loss_db = model_.reference_loss_db + 10 * model_.path_loss_exponent * std::log10(distance_m);
-        /* Whole dBm: a difference in the last bit of log10 cannot reach a result. */
-        const int heard_dbm = static_cast<int>(std::lround(model_.tx_power_dbm - loss_db));
-        radio->rssi_dbm.push_back(heard_dbm);
-        other->rssi_dbm.push_back(heard_dbm);
-    }
-    radio->rssi_dbm.push_back(0); /* itself */
-    radios_.push_back(std::move(radio));
-    return radios_.size() - 1;
+    const std::size_t index = neighbours_.add(position_m);
+    radios_.push_back(std::make_unique<Radio>(*this, index, std::move(handler)));
+    return index;
 }
 
 tsr_radio Air::radio(std::size_t index)
@@ -122,12 +115,12 @@ tsr_radio Air::radio(std::size_t index)
 
 int Air::rssi_dbm(std::size_t from, std::size_t to) const
 {
-    return radios_.at(to)->rssi_dbm.at(from);
-}
-
-bool Air::audible(std::size_t from, std::size_t to) const
-{
-    return rssi_dbm(from, to) >= static_cast<int>(std::lround(model_.sensitivity_dbm));
+    for (const air::Link &link : neighbours_.of(from)) {
+        if (link.radio == to) {
+            return air::to_dbm(link.mean_q4);
+        }
+    }
+    return kSilentDbm;
 }
 
 void Air::account(Radio &radio) const
@@ -147,6 +140,12 @@ AirTimes Air::times(std::size_t index) const
     return radios_.at(index)->times;
 }
 
+/* For an acknowledgement a radio listens by itself, even if the MAC has told it to sleep. */
+void Air::update_listening(Radio &radio)
+{
+    radio.receiver.listen(!radio.sending && !radio.turning && (radio.receiving || radio.busy), clock_.now_us());
+}
+
 tsr_status Air::configure(void *radio, std::uint8_t channel, std::uint16_t pan_id, std::uint16_t address)
 {
     auto &self = *static_cast<Radio *>(radio);
@@ -156,6 +155,7 @@ tsr_status Air::configure(void *radio, std::uint8_t channel, std::uint16_t pan_i
     self.channel = channel;
     self.pan_id = pan_id;
     self.address = address;
+    self.receiver.tune(channel, self.air->clock_.now_us());
     return TSR_OK;
 }
 
@@ -163,10 +163,8 @@ tsr_status Air::set_receiving(void *radio, bool receiving)
 {
     auto &self = *static_cast<Radio *>(radio);
     self.air->account(self);
-    if (receiving && !self.receiving) {
-        self.listening_since_us = self.air->clock_.now_us();
-    }
     self.receiving = receiving;
+    self.air->update_listening(self);
     return TSR_OK;
 }
 
@@ -179,28 +177,30 @@ tsr_status Air::transmit(void *radio, const std::uint8_t *psdu, std::size_t psdu
     if (self.busy) {
         return TSR_ERR_BUSY;
     }
-    self.air->account(self);
+    Air &air = *self.air;
+    air.account(self);
     self.busy = true;
     ++self.attempt;
     self.psdu.assign(psdu, psdu + psdu_len);
-    Air &air = *self.air;
+    air.update_listening(self);
+    if (!air.cca_at_end_) {
+        self.receiver.start_cca(air.clock_.now_us());
+    }
     air.clock_.at(air.clock_.now_us() + TSR_RADIO_CCA_US, [&air, &self] { air.sense(self); });
     return TSR_OK;
 }
 
-bool Air::channel_clear(const Radio &radio) const
-{
-    return !radio.sending && std::none_of(on_air_.begin(), on_air_.end(), [&](const auto &transmission) {
-        return transmission->channel == radio.channel && audible(transmission->sender, radio.index);
-    });
-}
-
 void Air::sense(Radio &radio)
 {
-    if (!channel_clear(radio)) {
+    if (cca_at_end_) {
+        radio.receiver.start_cca(clock_.now_us());
+    }
+    if (!radio.receiver.finish_cca() || radio.sending) {
         finish(radio, TSR_RADIO_CHANNEL_BUSY, clock_.now_us());
         return;
     }
+    radio.turning = true;
+    update_listening(radio);
     clock_.at(clock_.now_us() + TSR_RADIO_TURNAROUND_US, [this, &radio] { send_data(radio); });
 }
 
@@ -208,6 +208,7 @@ std::shared_ptr<Air::Transmission> Air::begin(Radio &sender, std::vector<std::ui
 {
     account(sender);
     sender.sending = true;
+    update_listening(sender);
     auto transmission = std::make_shared<Transmission>();
     transmission->number = transmissions_++;
     transmission->sender = sender.index;
@@ -215,19 +216,42 @@ std::shared_ptr<Air::Transmission> Air::begin(Radio &sender, std::vector<std::ui
     transmission->start_us = clock_.now_us();
     transmission->end_us = transmission->start_us + duration_us(psdu.size());
     transmission->psdu = std::move(psdu);
-    for (const auto &other : on_air_) {
-        if (other->channel == transmission->channel) {
-            other->overlaps.push_back(sender.index);
-            transmission->overlaps.push_back(other->sender);
+    arrive(*transmission);
+    clock_.at(transmission->end_us, [this, transmission] { end(*transmission); });
+    return transmission;
+}
+
+void Air::arrive(const Transmission &transmission)
+{
+    air::Signal signal;
+    signal.number = transmission.number;
+    signal.start_us = transmission.start_us;
+    signal.end_us = transmission.end_us;
+    signal.channel = transmission.channel;
+    for (const air::Link &link : neighbours_.of(transmission.sender)) {
+        signal.level_q4 = link.mean_q4 + propagation_.fading_q4(transmission.sender, link.radio, transmission.start_us);
+        radios_[link.radio]->receiver.begin(signal);
+        ++arrivals_;
+    }
+}
+
+/* Takes it from the air; gives those that have got it right. */
+std::vector<Air::Receipt> Air::leave(const Transmission &transmission)
+{
+    std::vector<Receipt> heard;
+    for (const air::Link &link : neighbours_.of(transmission.sender)) {
+        Radio &radio = *radios_[link.radio];
+        const air::Outcome outcome = radio.receiver.end(transmission.number, clock_.now_us());
+        if (chance_keeps(transmission, radio.index, outcome.success_q32)) {
+            heard.push_back({&radio, outcome.level_q4});
         }
     }
-    on_air_.push_back(transmission);
-    clock_.at(transmission->end_us, [this, transmission] { end(transmission); });
-    return transmission;
+    return heard;
 }
 
 void Air::send_data(Radio &radio)
 {
+    radio.turning = false;
     if (radio.sending) { /* an acknowledgement of its own is on air */
         finish(radio, TSR_RADIO_CHANNEL_BUSY, clock_.now_us());
         return;
@@ -249,65 +273,47 @@ void Air::send_ack(Radio &radio, Radio &to, std::uint8_t sequence, std::uint64_t
     ack->frame_end_us = frame_end_us;
 }
 
-/* Near enough, not sending, and nothing else in the way. */
-bool Air::reaches(const Radio &receiver, const Transmission &transmission) const
+bool Air::chance_keeps(const Transmission &transmission, std::size_t receiver, std::uint64_t success_q32) const
 {
-    if (receiver.index == transmission.sender || receiver.sending || receiver.channel != transmission.channel ||
-        !audible(transmission.sender, receiver.index)) {
-        return false;
-    }
-    return std::none_of(transmission.overlaps.begin(), transmission.overlaps.end(),
-                        [&](std::size_t other) { return other == receiver.index || audible(other, receiver.index); });
+    const std::uint64_t draw = air::mix(air::mix(seed_ + transmission.number) + receiver);
+    return (draw >> 32) < air::both_q32(success_q32, kept_q32_);
 }
 
-/* A data frame needs a receiver that was on all the time. For its acknowledgement
- * a radio listens by itself, even if the MAC has told it to sleep. */
-bool Air::hears(const Radio &receiver, const Transmission &transmission) const
-{
-    return receiver.receiving && receiver.listening_since_us <= transmission.start_us &&
-           reaches(receiver, transmission);
-}
-
-bool Air::chance_loses(const Transmission &transmission, std::size_t receiver) const
-{
-    const std::uint64_t draw = mix(mix(model_.seed + transmission.number) + receiver);
-    return (draw >> 48) < loss_q16_;
-}
-
-void Air::deliver(Radio &receiver, const Transmission &transmission)
+void Air::deliver(const Receipt &receipt, const Transmission &transmission)
 {
     tsr_radio_event event{};
     event.kind = TSR_RADIO_RECEIVED;
     event.time_us = transmission.end_us;
     event.received.psdu = transmission.psdu.data();
     event.received.psdu_len = static_cast<std::uint8_t>(transmission.psdu.size());
-    event.received.rssi_dbm =
-        static_cast<std::int8_t>(std::clamp(rssi_dbm(transmission.sender, receiver.index), -128, 127));
-    receiver.handler(event);
+    event.received.rssi_dbm = static_cast<std::int8_t>(std::clamp(air::to_dbm(receipt.level_q4), -128, 127));
+    receipt.radio->handler(event);
 }
 
-void Air::end(const std::shared_ptr<Transmission> &transmission)
+void Air::end(const Transmission &transmission)
 {
-    on_air_.erase(std::find(on_air_.begin(), on_air_.end(), transmission));
-    Radio &sender = *radios_[transmission->sender];
+    Radio &sender = *radios_[transmission.sender];
     account(sender);
     sender.sending = false;
-    sender.listening_since_us = clock_.now_us();
+    update_listening(sender);
+    const std::vector<Receipt> heard = leave(transmission);
 
-    const auto &psdu = transmission->psdu;
-    const AirFrame frame{transmission->start_us, sender.index, transmission->channel, psdu.data(), psdu.size(), 0};
-    const AirFate fate = judge_ ? judge_(transmission->number, frame) : AirFate::natural;
-    if (transmission->acknowledges != nullptr) {
-        end_ack(*transmission, frame, fate);
+    const auto &psdu = transmission.psdu;
+    const AirFrame frame{transmission.start_us, sender.index, transmission.channel, psdu.data(), psdu.size(), 0};
+    const AirFate fate = judge_ ? judge_(transmission.number, frame) : AirFate::natural;
+    if (transmission.acknowledges != nullptr) {
+        end_ack(transmission, frame, fate, heard);
     } else {
-        end_data(*transmission, frame, fate);
+        end_data(transmission, frame, fate, heard);
     }
 }
 
-void Air::end_ack(const Transmission &transmission, AirFrame frame, AirFate fate)
+void Air::end_ack(const Transmission &transmission, AirFrame frame, AirFate fate, const std::vector<Receipt> &heard)
 {
     Radio &to = *transmission.acknowledges;
-    const bool got = fate != AirFate::lost && reaches(to, transmission) && !chance_loses(transmission, to.index);
+    const bool got = fate != AirFate::lost && std::any_of(heard.begin(), heard.end(), [&to](const Receipt &receipt) {
+                         return receipt.radio == &to;
+                     });
     frame.lost_at = got ? 0 : 1;
     if (tap_) {
         tap_(frame);
@@ -317,68 +323,69 @@ void Air::end_ack(const Transmission &transmission, AirFrame frame, AirFate fate
     }
 }
 
-/* Those addressed that get the frame; lost_at counts those that do not. */
-std::vector<Air::Radio *> Air::receivers_of(const Transmission &transmission, AirFate fate,
-                                            std::uint64_t &lost_at) const
+std::uint64_t Air::broadcast_losses(const Transmission &transmission, std::uint64_t got) const
 {
-    const auto &psdu = transmission.psdu;
-    std::vector<Radio *> receivers;
-    if (psdu.size() < kAddressedLen) {
-        return receivers;
-    }
-    const unsigned pan_id = psdu[3] | psdu[4] << 8;
-    const unsigned destination = psdu[5] | psdu[6] << 8;
-    for (const auto &radio : radios_) {
-        if (radio->index == transmission.sender || radio->pan_id != pan_id ||
-            (destination != kBroadcast && radio->address != destination)) {
-            continue;
-        }
-        if (fate != AirFate::lost && hears(*radio, transmission) && !chance_loses(transmission, radio->index)) {
-            receivers.push_back(radio.get());
-        } else {
-            ++lost_at;
-        }
-    }
-    return receivers;
+    const auto &links = neighbours_.of(transmission.sender);
+    const auto meant = std::count_if(links.begin(), links.end(), [&](const air::Link &link) {
+        return radios_[link.radio]->pan_id == pan_of(transmission.psdu);
+    });
+    return static_cast<std::uint64_t>(meant) - got;
 }
 
-void Air::end_data(const Transmission &transmission, AirFrame frame, AirFate fate)
+void Air::end_data(const Transmission &transmission, AirFrame frame, AirFate fate, const std::vector<Receipt> &heard)
 {
-    Radio &sender = *radios_[transmission.sender];
     const auto &psdu = transmission.psdu;
-    const std::vector<Radio *> receivers = receivers_of(transmission, fate, frame.lost_at);
+    const bool addressed = psdu.size() >= kAddressedLen;
+    const bool broadcast = !addressed || destination_of(psdu) == kBroadcast;
+    std::vector<Receipt> got;
+    if (addressed && fate != AirFate::lost) {
+        std::copy_if(heard.begin(), heard.end(), std::back_inserter(got), [&](const Receipt &receipt) {
+            const Radio &radio = *receipt.radio;
+            return radio.receiving && radio.pan_id == pan_of(psdu) &&
+                   (broadcast || radio.address == destination_of(psdu));
+        });
+    }
+    if (addressed) {
+        frame.lost_at = broadcast ? broadcast_losses(transmission, got.size()) : got.empty();
+    }
     if (tap_) {
         tap_(frame);
     }
-    const std::uint64_t end_us = transmission.end_us;
-    const bool broadcast = psdu.size() < kAddressedLen || (psdu[5] | psdu[6] << 8) == kBroadcast;
+    Radio &sender = *radios_[transmission.sender];
     if ((psdu[0] & kAckRequest) == 0 || broadcast) {
-        finish(sender, TSR_RADIO_SENT, end_us);
+        finish(sender, TSR_RADIO_SENT, transmission.end_us);
     } else {
-        if (!receivers.empty()) {
-            Radio &receiver = *receivers.front();
-            const std::uint8_t sequence = psdu[2];
-            clock_.at(end_us + TSR_RADIO_TURNAROUND_US,
-                      [this, &receiver, &sender, sequence, end_us] { send_ack(receiver, sender, sequence, end_us); });
+        answer(sender, got.empty() ? nullptr : got.front().radio, transmission);
+    }
+    for (const Receipt &receipt : got) {
+        deliver(receipt, transmission);
+        if (fate == AirFate::twice) {
+            deliver(receipt, transmission);
         }
-        clock_.at(end_us + TSR_RADIO_ACK_WAIT_US, [this, &sender, end_us, attempt = sender.attempt] {
-            if (sender.busy && sender.attempt == attempt) {
-                finish(sender, TSR_RADIO_NO_ACK, end_us);
-            }
+    }
+}
+
+/* The acknowledgement that follows, if anybody got the frame, and the end of the wait for it. */
+void Air::answer(Radio &sender, Radio *receiver, const Transmission &transmission)
+{
+    const std::uint64_t end_us = transmission.end_us;
+    if (receiver != nullptr) {
+        clock_.at(end_us + TSR_RADIO_TURNAROUND_US, [this, receiver, &sender, sequence = transmission.psdu[2], end_us] {
+            send_ack(*receiver, sender, sequence, end_us);
         });
     }
-    for (Radio *receiver : receivers) {
-        deliver(*receiver, transmission);
-        if (fate == AirFate::twice) {
-            deliver(*receiver, transmission);
+    clock_.at(end_us + TSR_RADIO_ACK_WAIT_US, [this, &sender, end_us, attempt = sender.attempt] {
+        if (sender.busy && sender.attempt == attempt) {
+            finish(sender, TSR_RADIO_NO_ACK, end_us);
         }
-    }
+    });
 }
 
 void Air::finish(Radio &radio, tsr_radio_outcome outcome, std::uint64_t frame_end_us)
 {
     account(radio);
     radio.busy = false;
+    update_listening(radio);
     tsr_radio_event event{};
     event.kind = TSR_RADIO_TX_DONE;
     event.time_us = frame_end_us;

@@ -108,6 +108,8 @@ def sites(folder, scene):
     edits = (("unknown pair", r"lead = 3", "lead = 77", "77"),
              ("cycle", r"parent = 1\b", "parent = 3", "parent"),
              ("unknown field", r'name = "aloe"', 'name = "aloe"\ncolour = "red"', "colour"),
+             ("negative shadowing", r"\[radio\]", "[radio]\nshadowing_db = -3", "shadowing_db"),
+             ("CCA below the noise", r"\[radio\]", "[radio]\ncca_threshold_dbm = -120", "cca_threshold_dbm"),
              ("not TOML", r"\[site\]", "[site", "not_TOML.toml:1"),
              ("negative baseline", r"baseline_mm = 160", "baseline_mm = -160", "baseline_mm"),
              ("two gateways", r'role = "relay"', 'role = "gateway"', "gateway"),

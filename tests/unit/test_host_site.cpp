@@ -5,6 +5,7 @@
 
 #include "test_host_folder.h"
 #include "test_host_site.h"
+#include "tsr/host/input_error.h"
 #include "tsr/host/site.h"
 
 namespace tsr
@@ -23,6 +24,11 @@ seed = 7
 
 [radio]
 tx_power_dbm = 4
+shadowing_db = 6.5
+fading_db = 2
+fading_period_ms = 250
+sensitivity_dbm = -97
+capture_db = 4
 frame_loss = 0.125
 
 [thresholds]
@@ -99,6 +105,12 @@ TEST(HostSite, ReadsEveryField)
     EXPECT_EQ(site.pan_id, 0xbeef);
     EXPECT_EQ(site.seed, 7u);
     EXPECT_EQ(site.radio.tx_power_dbm, 4.0);
+    EXPECT_EQ(site.radio.shadowing_db, 6.5);
+    EXPECT_EQ(site.radio.fading_db, 2.0);
+    EXPECT_EQ(site.radio.fading_period_ms, 250u);
+    EXPECT_EQ(site.radio.sensitivity_dbm, -97.0);
+    EXPECT_EQ(site.radio.capture_db, 4.0);
+    EXPECT_EQ(site.radio.cca_threshold_dbm, -87.0);
     EXPECT_EQ(site.radio.frame_loss, 0.125);
     EXPECT_EQ(site.thresholds.similarity_px2, 1.0);
     ASSERT_EQ(site.nodes.size(), 4u);
@@ -125,6 +137,11 @@ TEST(HostSite, WritesWhatItReads)
     site.nodes[2].frames = "left";
     site.pairs[1].right = SitePose{{0.06, 0, 0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
     site.radio.path_loss_exponent = 1.0 / 0.3;
+    site.radio.shadowing_db = 5;
+    site.radio.fading_db = 1.5;
+    site.radio.fading_period_ms = 333;
+    site.radio.capture_db = 0.5;
+    site.radio.cca_threshold_dbm = -77;
     write_site(folder / "site.toml", site);
     const Site read = load_site(folder / "site.toml");
     write_site(folder / "again.toml", read);
@@ -132,6 +149,11 @@ TEST(HostSite, WritesWhatItReads)
     EXPECT_EQ(read.name, site.name);
     EXPECT_EQ(read.seed, site.seed);
     EXPECT_EQ(read.radio.path_loss_exponent, site.radio.path_loss_exponent);
+    EXPECT_EQ(read.radio.shadowing_db, 5.0);
+    EXPECT_EQ(read.radio.fading_db, 1.5);
+    EXPECT_EQ(read.radio.fading_period_ms, 333u);
+    EXPECT_EQ(read.radio.capture_db, 0.5);
+    EXPECT_EQ(read.radio.cca_threshold_dbm, -77.0);
     EXPECT_EQ(read.pairs[0].left.rotation, site.pairs[0].left.rotation);
     EXPECT_EQ(read.pairs[0].d0_px, 1.5);
     EXPECT_TRUE(read.pairs[1].right.has_value());
@@ -157,12 +179,26 @@ TEST(HostSite, RefusesSyntaxAndTypesWithTheLine)
     EXPECT_SITE_REFUSED("node = 3\n" + kGood, "site.toml:");
 }
 
+TEST(HostSite, RefusesRadiosThatCannotBe)
+{
+    EXPECT_SITE_REFUSED(with("shadowing_db = 6.5", "shadowing_db = -1"),
+                        "site.toml:9: radio.shadowing_db: -1 is outside 0..20");
+    EXPECT_SITE_REFUSED(with("fading_db = 2", "fading_db = 21"), "site.toml:10: radio.fading_db: 21 is outside");
+    EXPECT_SITE_REFUSED(with("fading_period_ms = 250", "fading_period_ms = 0"), "fading_period_ms: 0 is outside");
+    EXPECT_SITE_REFUSED(with("capture_db = 4", "capture_db = nan"), "capture_db");
+    EXPECT_SITE_REFUSED(with("capture_db = 4", "cca_threshold_dbm = -97.5"),
+                        "site.toml:13: radio.cca_threshold_dbm: -97.5 is outside -97..10");
+    Site site = small_site();
+    site.radio.cca_threshold_dbm = site.radio.sensitivity_dbm - 1;
+    EXPECT_THROW(check_site(site), InputError);
+}
+
 TEST(HostSite, RefusesTreesThatCannotWork)
 {
     EXPECT_SITE_REFUSED(with("id = 4\n", "id = 3\n"), "node 3: id: is used twice");
     EXPECT_SITE_REFUSED(with("id = 4\n", "id = 0\n"), "id: 0 is outside 1..65533");
     EXPECT_SITE_REFUSED(with("id = 4\n", "id = 0xfffe\n"), "id: 65534 is outside");
-    EXPECT_SITE_REFUSED(with("role = \"relay\"", "role = \"rely\""), "site.toml:21: node 2: role: 'rely' is not");
+    EXPECT_SITE_REFUSED(with("role = \"relay\"", "role = \"rely\""), "site.toml:26: node 2: role: 'rely' is not");
     EXPECT_SITE_REFUSED(with("role = \"relay\"", "role = \"gateway\""), "there is exactly one");
     EXPECT_SITE_REFUSED(with("role = \"gateway\"", "role = \"relay\""), "no node has role = \"gateway\"");
     EXPECT_SITE_REFUSED(with("parent = 1", "parent = 9"), "node 2: parent: there is no node 9");

@@ -220,6 +220,29 @@ void check_pairs(const Site &site, const NodeIndex &index)
     }
 }
 
+void check_radio(const Site &site)
+{
+    const SiteRadio &radio = site.radio;
+    if (!(radio.frame_loss >= 0 && radio.frame_loss <= 1)) {
+        refuse_site(site, 0, "radio.frame_loss", "is outside 0..1");
+    }
+    if (!(radio.shadowing_db >= 0 && radio.shadowing_db <= 20)) {
+        refuse_site(site, 0, "radio.shadowing_db", "is outside 0..20");
+    }
+    if (!(radio.fading_db >= 0 && radio.fading_db <= 20)) {
+        refuse_site(site, 0, "radio.fading_db", "is outside 0..20");
+    }
+    if (radio.fading_period_ms < 1 || radio.fading_period_ms > kFadingPeriodMsMax) {
+        refuse_site(site, 0, "radio.fading_period_ms", "is outside 1.." + std::to_string(kFadingPeriodMsMax));
+    }
+    if (!(radio.capture_db >= 0 && radio.capture_db <= 20)) {
+        refuse_site(site, 0, "radio.capture_db", "is outside 0..20");
+    }
+    if (!(radio.cca_threshold_dbm >= radio.sensitivity_dbm)) {
+        refuse_site(site, 0, "radio.cca_threshold_dbm", "is below sensitivity_dbm");
+    }
+}
+
 void check_settings(const Site &site)
 {
     if (const std::string fault = fault_in_name(site.name); !fault.empty()) {
@@ -231,9 +254,7 @@ void check_settings(const Site &site)
     if (site.channel < 11 || site.channel > 26) {
         refuse_site(site, 0, "site.channel", "is outside 11..26");
     }
-    if (!(site.radio.frame_loss >= 0 && site.radio.frame_loss <= 1)) {
-        refuse_site(site, 0, "radio.frame_loss", "is outside 0..1");
-    }
+    check_radio(site);
     const SiteThresholds &limits = site.thresholds;
     /* In sixteenths of a pixel the node's fields have 8 bits and 16 bits; 0 would mean its default. */
     if (!(limits.similarity_clip_px >= 1.0 / 16 && limits.similarity_clip_px <= 255.0 / 16)) {

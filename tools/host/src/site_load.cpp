@@ -124,7 +124,14 @@ void read_radio(TomlFields &fields, SiteRadio &radio)
     radio.tx_power_dbm = fields.number("tx_power_dbm", -40, 30, radio.tx_power_dbm);
     radio.reference_loss_db = fields.number("reference_loss_db", 0, 120, radio.reference_loss_db);
     radio.path_loss_exponent = fields.number("path_loss_exponent", 1, 8, radio.path_loss_exponent);
+    radio.shadowing_db = fields.number("shadowing_db", 0, 20, radio.shadowing_db);
+    radio.fading_db = fields.number("fading_db", 0, 20, radio.fading_db);
+    radio.fading_period_ms =
+        static_cast<std::uint32_t>(fields.integer("fading_period_ms", 1, kFadingPeriodMsMax, radio.fading_period_ms));
     radio.sensitivity_dbm = fields.number("sensitivity_dbm", -140, 0, radio.sensitivity_dbm);
+    radio.capture_db = fields.number("capture_db", 0, 20, radio.capture_db);
+    /* Below the sensitivity it would take the noise for a busy channel; the standard allows 10 dB above. */
+    radio.cca_threshold_dbm = fields.number("cca_threshold_dbm", radio.sensitivity_dbm, 10, radio.sensitivity_dbm + 10);
     radio.frame_loss = fields.number("frame_loss", 0, 1, radio.frame_loss);
     fields.refuse_unknown();
 }

@@ -65,7 +65,12 @@ std::string head_text(const Site &site)
     text += line("tx_power_dbm", number(site.radio.tx_power_dbm));
     text += line("reference_loss_db", number(site.radio.reference_loss_db));
     text += line("path_loss_exponent", number(site.radio.path_loss_exponent));
+    text += line("shadowing_db", number(site.radio.shadowing_db));
+    text += line("fading_db", number(site.radio.fading_db));
+    text += line("fading_period_ms", std::to_string(site.radio.fading_period_ms));
     text += line("sensitivity_dbm", number(site.radio.sensitivity_dbm));
+    text += line("capture_db", number(site.radio.capture_db));
+    text += line("cca_threshold_dbm", number(site.radio.cca_threshold_dbm));
     text += line("frame_loss", number(site.radio.frame_loss));
     const SiteThresholds &limits = site.thresholds;
     text += "\n[thresholds]\n";

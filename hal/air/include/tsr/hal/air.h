@@ -1,14 +1,16 @@
 /*
- * Air: a radio medium in one process, in virtual time.
+ * Air: a radio medium in one process, in virtual time (docs/radio.md).
  *
- * Every transmission reaches every other radio with the power of a table that
- * is computed once from positions (log-distance path loss) and then quantised
- * to whole dBm, so that results do not depend on the machine. A frame is lost
- * at a receiver if another audible transmission overlaps it there, if the
- * receiver did not listen all the time, or by chance, with the probability the
- * table gives; chance is a hash of seed, transmission and receiver.
+ * A transmission arrives at every radio near enough to matter with the level
+ * of its link: path loss, shadowing, fading (tsr/hal/air/propagation.h). Each
+ * receiver follows one frame at a time and takes the others for interference
+ * (receiver.h); SINR and length give the probability that the frame is right
+ * (packet_error.h), and chance, a hash of seed, transmission and receiver,
+ * decides. Levels, powers and probabilities are integers from tables made when
+ * the medium is made, the same on every machine.
  *
- * The simple model of a first version: no fading, no capture effect.
+ * A transmission costs in proportion to the sender's neighbours (neighbours.h),
+ * a radio in proportion to those around it; nothing loops over all radios.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -24,20 +26,13 @@
 extern "C" {
 #include "tsr/hal/radio.h"
 }
+#include "tsr/hal/air/model.h"
+#include "tsr/hal/air/neighbours.h"
+#include "tsr/hal/air/propagation.h"
+#include "tsr/hal/air/receiver.h"
 
 namespace tsr
 {
-
-/* Path loss at distance d: reference_loss_db + 10 exponent log10(d / 1 m)
- * (Rappaport, Wireless Communications, 2nd ed., eq. 4.68, without shadowing). */
-struct AirModel {
-    double tx_power_dbm = 0;
-    double reference_loss_db = 40; /* free space at 1 m, 2.45 GHz: 40.2 dB */
-    double path_loss_exponent = 3;
-    double sensitivity_dbm = -95;
-    double frame_loss = 0; /* 0..1, of every frame and acknowledgement, whatever the distance */
-    std::uint64_t seed = 1;
-};
 
 struct AirTimes { /* what a radio did, us */
     std::uint64_t transmitting = 0;
@@ -52,12 +47,12 @@ struct AirFrame {
     std::uint8_t channel = 0;
     const std::uint8_t *psdu = nullptr;
     std::size_t psdu_len = 0;
-    std::uint64_t lost_at = 0; /* receivers addressed that did not get it: 0 or 1; broadcasts: their number */
+    std::uint64_t lost_at = 0; /* 1: nobody addressed got it; broadcasts: the sender's neighbours that did not */
 };
 
 /* What becomes of one transmission, when a test decides it. */
 enum class AirFate {
-    natural, /* distance, overlap and chance decide */
+    natural, /* levels, overlap and chance decide */
     lost,    /* nobody gets it */
     twice    /* who gets it gets it twice; an acknowledgement counts once */
 };
@@ -88,42 +83,55 @@ class Air
     void set_judge(Judge judge) { judge_ = std::move(judge); }
     std::uint64_t transmissions() const { return transmissions_; }
     AirTimes times(std::size_t index) const; /* until now */
+    /* Of a link without its fading, rounded; kSilentDbm between radios that are no neighbours. */
+    static constexpr int kSilentDbm = -128;
     int rssi_dbm(std::size_t from, std::size_t to) const;
+    /* What has been done: pairs of radios compared, receivers that a transmission was brought to. */
+    std::uint64_t pairs_compared() const { return neighbours_.compared(); }
+    std::uint64_t arrivals() const { return arrivals_; }
 
   private:
     struct Radio;
     struct Transmission;
+    struct Receipt { /* a receiver that followed a transmission and has it right */
+        Radio *radio;
+        int level_q4;
+    };
 
     static tsr_status configure(void *radio, std::uint8_t channel, std::uint16_t pan_id, std::uint16_t address);
     static tsr_status set_receiving(void *radio, bool receiving);
     static tsr_status transmit(void *radio, const std::uint8_t *psdu, std::size_t psdu_len);
     static const tsr_radio_ops kOps;
 
-    bool audible(std::size_t from, std::size_t to) const;
-    bool channel_clear(const Radio &radio) const;
     void sense(Radio &radio);
     void send_data(Radio &radio);
     void send_ack(Radio &radio, Radio &to, std::uint8_t sequence, std::uint64_t frame_end_us);
     std::shared_ptr<Transmission> begin(Radio &sender, std::vector<std::uint8_t> psdu);
-    void end(const std::shared_ptr<Transmission> &transmission);
-    void end_data(const Transmission &transmission, AirFrame frame, AirFate fate);
-    void end_ack(const Transmission &transmission, AirFrame frame, AirFate fate);
-    std::vector<Radio *> receivers_of(const Transmission &transmission, AirFate fate, std::uint64_t &lost_at) const;
-    bool reaches(const Radio &receiver, const Transmission &transmission) const;
-    bool hears(const Radio &receiver, const Transmission &transmission) const;
-    bool chance_loses(const Transmission &transmission, std::size_t receiver) const;
-    void deliver(Radio &receiver, const Transmission &transmission);
+    void arrive(const Transmission &transmission);
+    std::vector<Receipt> leave(const Transmission &transmission);
+    void end(const Transmission &transmission);
+    void end_data(const Transmission &transmission, AirFrame frame, AirFate fate, const std::vector<Receipt> &heard);
+    void end_ack(const Transmission &transmission, AirFrame frame, AirFate fate, const std::vector<Receipt> &heard);
+    std::uint64_t broadcast_losses(const Transmission &transmission, std::uint64_t got) const;
+    void answer(Radio &sender, Radio *receiver, const Transmission &transmission);
+    bool chance_keeps(const Transmission &transmission, std::size_t receiver, std::uint64_t success_q32) const;
+    void deliver(const Receipt &receipt, const Transmission &transmission);
     void finish(Radio &radio, tsr_radio_outcome outcome, std::uint64_t frame_end_us);
     void account(Radio &radio) const;
+    void update_listening(Radio &radio);
 
-    AirModel model_;
+    std::uint64_t seed_;
+    bool cca_at_end_;
+    air::Propagation propagation_;
+    air::ReceiverModel receivers_;
+    air::Neighbours neighbours_;
+    std::uint64_t kept_q32_; /* part of the frames that frame_loss leaves */
     Clock clock_;
     Tap tap_;
     Judge judge_;
-    std::uint32_t loss_q16_ = 0;
     std::uint64_t transmissions_ = 0;
+    std::uint64_t arrivals_ = 0;
     std::vector<std::unique_ptr<Radio>> radios_;
-    std::vector<std::shared_ptr<Transmission>> on_air_; /* under way */
 };
 
 } // namespace tsr

@@ -41,12 +41,19 @@ enum class Role {
 
 std::string_view role_name(Role role);
 
-struct SiteRadio { /* the emulator's link budget */
+inline constexpr std::uint32_t kFadingPeriodMsMax = 3'600'000;
+
+struct SiteRadio { /* the emulator's link budget: docs/radio.md */
     double tx_power_dbm = 0.0;
     double reference_loss_db = 40.0; /* at 1 m */
     double path_loss_exponent = 3.0;
-    double sensitivity_dbm = -95.0;
-    double frame_loss = 0.0; /* 0 .. 1, independent of the distance */
+    double shadowing_db = 0.0; /* standard deviation over links */
+    double fading_db = 0.0;    /* standard deviation of a link over time */
+    std::uint32_t fading_period_ms = 1000;
+    double sensitivity_dbm = -95.0;   /* 1 % of frames with 20 octets are lost */
+    double capture_db = 3.0;          /* over another frame, likewise */
+    double cca_threshold_dbm = -85.0; /* not below the sensitivity; in a file by default 10 dB above it */
+    double frame_loss = 0.0;          /* 0 .. 1, independent of the distance */
 };
 
 /* When is a frame a change, when are two maps the same scene (docs/math.md, eq. (6) to (9) and (20) to (22))?
