@@ -11,7 +11,7 @@
 
 #if defined(__ARM_FEATURE_SIMD32)
 
-static inline uint32_t add_bytes(uint32_t sum, uint32_t word)
+static inline uint32_t tsr_change_add_bytes(uint32_t sum, uint32_t word)
 {
     uint32_t result;
     __asm("usada8 %0, %1, %2, %3" : "=r"(result) : "r"(word), "r"(0), "r"(sum));
@@ -20,7 +20,7 @@ static inline uint32_t add_bytes(uint32_t sum, uint32_t word)
 
 #else
 
-static inline uint32_t add_bytes(uint32_t sum, uint32_t word)
+static inline uint32_t tsr_change_add_bytes(uint32_t sum, uint32_t word)
 {
     uint32_t pairs = (word & 0x00ff00ffu) + (word >> 8 & 0x00ff00ffu);
     return sum + (pairs & 0xffffu) + (pairs >> 16);

@@ -1,6 +1,5 @@
 /*
- * The cells of change detection. Every loop visits each cell a bounded number
- * of times; a region is walked without a stack.
+ * The cells of change detection: what every cell of every frame goes through.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -19,20 +18,10 @@
 #define LIGHT_MAX_Q8 512u
 #define BRIGHT 192 /* from here on some pixels of a cell may be clipped */
 #define LIGHT_DOUBT_LOG2 2
-#define EDGE_DOUBT_LOG2 3
-#define EDGE_DOUBT_MAX (UINT8_MAX >> EDGE_DOUBT_LOG2) /* of the largest contrast */
 #define RISE_SETTLING 4
 #define SLOW_BEATS 8u /* a power of two, so that the beat may wrap */
 
 #define BLOCK 4u
-#define MARK 0x80
-#define AROUND 9u
-#define ITSELF 4u
-
-static unsigned cells_of(const struct tsr_change *change)
-{
-    return (unsigned)change->cells_x * change->cells_y;
-}
 
 static uint32_t sum_block(const uint8_t *pixels, size_t stride)
 {
@@ -40,7 +29,7 @@ static uint32_t sum_block(const uint8_t *pixels, size_t stride)
     for (unsigned y = 0; y < BLOCK; y++) {
         uint32_t word;
         memcpy(&word, pixels + y * stride, sizeof word);
-        sum = add_bytes(sum, word);
+        sum = tsr_change_add_bytes(sum, word);
     }
     return sum;
 }
@@ -94,7 +83,7 @@ static int count_votes(const uint8_t *now, const uint8_t *mean, unsigned cells, 
 /* Bisection: no cell's ratio is kept, so this needs neither memory nor divisions. */
 unsigned tsr_change_measure_light(const struct tsr_change *change)
 {
-    unsigned cells = cells_of(change);
+    unsigned cells = tsr_change_cells(change);
     const uint8_t *now = change->state;
     const uint8_t *mean = now + cells;
     if (count_votes(now, mean, cells, UINT16_MAX) > -(int)VOTERS_MIN) { /* nobody: all against */
@@ -118,39 +107,6 @@ static int clip(int value, int low, int high)
     return value < low ? low : value > high ? high : value;
 }
 
-static int distance(int a, int b)
-{
-    return a > b ? a - b : b - a;
-}
-
-static int larger(int a, int b)
-{
-    return a > b ? a : b;
-}
-
-/* The largest step of I from a cell to one beside it: what a tremble of the camera moves a part of. */
-static int contrast_at(const struct tsr_change *change, const uint8_t *now, unsigned x, unsigned y)
-{
-    const ptrdiff_t row = change->cells_x;
-    int left = x > 0 ? distance(now[0], now[-1]) : 0;
-    int right = x + 1u < change->cells_x ? distance(now[0], now[1]) : 0;
-    int above = y > 0 ? distance(now[0], now[-row]) : 0;
-    int below = y + 1u < change->cells_y ? distance(now[0], now[row]) : 0;
-    return larger(larger(left, right), larger(above, below));
-}
-
-static bool is_watched(const struct tsr_change_config *config, unsigned x, unsigned y)
-{
-    unsigned side = config->reduction;
-    bool watched = config->watched_count == 0;
-    for (unsigned i = 0; i < config->watched_count && !watched; i++) {
-        const struct tsr_change_rectangle *area = &config->watched[i];
-        watched = x * side < (unsigned)area->x + area->width && x * side + side > area->x &&
-                  y * side < (unsigned)area->y + area->height && y * side + side > area->y;
-    }
-    return watched;
-}
-
 /* What all cells of a frame share. By value: a store to M could be one to anything behind a pointer. */
 struct rule {
     unsigned light_q8;
@@ -167,13 +123,13 @@ static int follow_cell(struct rule rule, int gray, uint8_t *mean, uint8_t *devia
     int before = *mean;
     int expected = (int)((*mean * rule.light_q8 + TSR_CHANGE_LIGHT_ONE_Q8 / 2u) / TSR_CHANGE_LIGHT_ONE_Q8);
     expected = expected < UINT8_MAX ? expected : UINT8_MAX;
-    int lit = distance(expected, before);
-    int step = 1 + (larger(expected, before) >= BRIGHT ? lit : lit >> LIGHT_DOUBT_LOG2);
-    int away = distance(gray, expected) - step;
-    int spread = *deviation & ~MARK;
+    int lit = tsr_change_distance(expected, before);
+    int step = 1 + (tsr_change_larger(expected, before) >= BRIGHT ? lit : lit >> LIGHT_DOUBT_LOG2);
+    int away = tsr_change_distance(gray, expected) - step;
+    int spread = *deviation & ~TSR_CHANGE_MARK;
     if (away <= 0) { /* M reaches I: D = 0 */
         *mean = (uint8_t)gray;
-        *deviation = (uint8_t)larger(spread - 1, rule.low);
+        *deviation = (uint8_t)tsr_change_larger(spread - 1, rule.low);
         return 0;
     }
     spread = clip(spread + clip(rule.amplification * away - spread, -1, rule.rise), rule.low, rule.high);
@@ -194,7 +150,7 @@ unsigned tsr_change_follow(struct tsr_change *change, unsigned light_q8)
                               change->frames < config->settle_frames ? RISE_SETTLING : 1,
                               change->beat % SLOW_BEATS != 0};
     unsigned cells_x = change->cells_x;
-    unsigned cells = cells_of(change);
+    unsigned cells = tsr_change_cells(change);
     const uint8_t *now = change->state;
     uint8_t *mean = change->state + cells;
     uint8_t *deviation = mean + cells;
@@ -202,63 +158,11 @@ unsigned tsr_change_follow(struct tsr_change *change, unsigned light_q8)
     for (unsigned y = 0; y < change->cells_y; y++) {
         for (unsigned x = 0; x < cells_x; x++, now++, mean++, deviation++) {
             int excess = follow_cell(rule, *now, mean, deviation);
-            if (excess != 0 && is_watched(config, x, y) &&
-                (excess > EDGE_DOUBT_MAX || excess > contrast_at(change, now, x, y) >> EDGE_DOUBT_LOG2)) {
-                *deviation |= MARK;
+            if (excess != 0 && tsr_change_counts(change, x, y, excess)) {
+                *deviation |= TSR_CHANGE_MARK;
                 changed++;
             }
         }
     }
     return changed;
-}
-
-/* From start over the marks, depth first. A visited cell holds the direction it was entered by instead of I. */
-static unsigned walk_region(struct tsr_change *change, unsigned start, unsigned wanted)
-{
-    unsigned cells = cells_of(change);
-    uint8_t *entered = change->state;
-    uint8_t *marks = change->state + (size_t)2 * cells;
-    int columns = change->cells_x;
-    int x = (int)start % columns;
-    int y = (int)start / columns;
-    unsigned count = 1;
-    entered[start] = ITSELF;
-    marks[start] &= (uint8_t)~MARK;
-    while (count < wanted) {
-        unsigned way = 0;
-        for (; way < AROUND; way++) {
-            int to_x = x + (int)(way % 3u) - 1;
-            int to_y = y + (int)(way / 3u) - 1;
-            if (to_x >= 0 && to_x < columns && to_y >= 0 && to_y < change->cells_y &&
-                (marks[to_y * columns + to_x] & MARK) != 0) {
-                break;
-            }
-        }
-        bool onward = way < AROUND;
-        unsigned taken = onward ? way : entered[y * columns + x];
-        if (!onward && taken == ITSELF) {
-            break;
-        }
-        int sign = onward ? 1 : -1;
-        x += sign * ((int)(taken % 3u) - 1);
-        y += sign * ((int)(taken / 3u) - 1);
-        if (onward) {
-            entered[y * columns + x] = (uint8_t)way;
-            marks[y * columns + x] &= (uint8_t)~MARK;
-            count++;
-        }
-    }
-    return count;
-}
-
-bool tsr_change_has_region(struct tsr_change *change, unsigned min_cells)
-{
-    unsigned cells = cells_of(change);
-    const uint8_t *marks = change->state + (size_t)2 * cells;
-    for (unsigned i = 0; i < cells; i++) {
-        if ((marks[i] & MARK) != 0 && walk_region(change, i, min_cells) >= min_cells) {
-            return true;
-        }
-    }
-    return false;
 }
