@@ -28,7 +28,7 @@ def bench():
         targets.append(target(f"{name}: people caught", found["caught"], CAUGHT_VIDEO_MIN, False, how))
     details = {"video": video}
     if "TSR_DATA" in os.environ:
-        scenes = measure_change.summary(measure_change.measure_scenes(pathlib.Path(os.environ["TSR_DATA"]), {}))
+        scenes = measure_change.summary(measure_change.measure_scenes(measure_change.left_views(pathlib.Path(os.environ["TSR_DATA"])), {}))
         how = "scenes of tests/support/change_scenes.py over all pairs, all conditions and gains"
         targets.append(target("scenes: frames with nothing new that wake", scenes["all"]["empty"], FALSE_SCENES_MAX, True, how))
         targets.append(target("scenes: objects caught", scenes["all"]["events"], CAUGHT_SCENES_MIN, False, how))

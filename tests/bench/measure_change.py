@@ -1,9 +1,10 @@
 """What the change detector catches and how often it wakes for nothing, as JSON.
 
-    TSR_BUILD=build/release python3 tests/bench/measure_change.py [--video FILE] [--pairs FOLDER] [--config NAME=VALUE ...]
+    TSR_BUILD=build/release python3 tests/bench/measure_change.py [--video FILE] [--pairs FOLDER | --pictures FILE ...]
+        [--config NAME=VALUE ...]
 
-Video: vtest.avi of Debian's opencv-doc against the labels in vtest_people.csv. Pairs: left views of a folder mb*/, made into
-scenes by tests/support/change_scenes.py. A frame that wakes is followed by one that becomes the background, as on a node;
+Video: vtest.avi of Debian's opencv-doc against the labels in vtest_people.csv; "" for none. Pairs: left views of a folder mb*/;
+these or any pictures are made into scenes by tests/support/change_scenes.py. A frame that wakes is followed by one that becomes the background, as on a node;
 "no rebase" is the detector alone. Needs python3-opencv; SEED (environment, default 1).
 
 SPDX-License-Identifier: Apache-2.0
@@ -121,8 +122,12 @@ def measure_scene(scene, options, counts):
         label_before = label
 
 
-def measure_scenes(folder, options):
-    pictures = [stereo_pairs.load(pair, WIDTH, HEIGHT)[0] for pair in stereo_pairs.folders(folder)]
+def left_views(folder):
+    return [folder / "left.png" for folder in stereo_pairs.folders(folder)]
+
+
+def measure_scenes(files, options):
+    pictures = [stereo_pairs.reduced(cv2.imread(str(file), cv2.IMREAD_GRAYSCALE), WIDTH, HEIGHT) for file in files]
     found, rng = {}, np.random.default_rng(int(os.environ.get("SEED", "1")))
     for condition in change_scenes.CONDITIONS:
         for gain in change_scenes.GAINS:
@@ -155,12 +160,14 @@ def main():
     parser = argparse.ArgumentParser(description="What the change detector catches and how often it wakes for nothing.")
     parser.add_argument("--video", default=VIDEO)
     parser.add_argument("--pairs", type=pathlib.Path)
+    parser.add_argument("--pictures", nargs="*", default=[], metavar="FILE")
     parser.add_argument("--config", nargs="*", default=[], metavar="NAME=VALUE", help="fields of tsr_change_config")
     arguments = parser.parse_args()
     options = {name: int(value) for name, value in (field.split("=") for field in arguments.config)}
     result = {"video": measure_video(arguments.video, options)} if arguments.video else {}
-    if arguments.pairs:
-        result["scenes"] = summary(measure_scenes(arguments.pairs, options))
+    files = left_views(arguments.pairs) if arguments.pairs else arguments.pictures
+    if files:
+        result["scenes"] = summary(measure_scenes(files, options))
     print(json.dumps(result, indent=1))
 
 
