@@ -69,6 +69,12 @@ void set_up_camera(tsr_node_config &config, const SiteNode &node, const SitePair
     config.watch_period_us = node.watch_period_ms * 1000;
     config.change.width = width;
     config.change.height = height;
+    config.change.watched_count = static_cast<std::uint8_t>(node.watch.size());
+    for (std::size_t i = 0; i < node.watch.size(); i++) {
+        const SiteRectangle &area = node.watch[i];
+        config.change.watched[i] = {static_cast<std::uint16_t>(area.x), static_cast<std::uint16_t>(area.y),
+                                    static_cast<std::uint16_t>(area.width), static_cast<std::uint16_t>(area.height)};
+    }
     config.match.width = width;
     config.match.height = height;
     config.match.disparities = static_cast<std::uint16_t>(pair.disparities);

@@ -42,13 +42,19 @@ class RefineConfig(ctypes.Structure):
                 ("diffusion", DiffusionConfig), ("fill_rule", U8)]
 
 
+class ChangeRectangle(ctypes.Structure):
+    _fields_ = [("x", U16), ("y", U16), ("width", U16), ("height", U16)]
+
+
 class ChangeConfig(ctypes.Structure):
     _fields_ = [("width", U16), ("height", U16), ("reduction", U8), ("amplification", U8), ("deviation_min", U8),
-                ("deviation_max", U8), ("min_cells", U16), ("settle_frames", U8)]
+                ("deviation_max", U8), ("min_cells", U16), ("settle_frames", U8),
+                ("watched_count", U8), ("watched", ChangeRectangle * 4)]
 
 
 class ChangeResult(ctypes.Structure):
-    _fields_ = [("changed", ctypes.c_bool), ("settling", ctypes.c_bool), ("changed_cells", U16)]
+    _fields_ = [("changed", ctypes.c_bool), ("settling", ctypes.c_bool), ("changed_cells", U16),
+                ("light_q8", U16)]
 
 
 class SimilarityConfig(ctypes.Structure):

@@ -117,6 +117,8 @@ def sites(folder, scene):
              ("no recordings", r'frames = "left160"\n', "", "node 3: frames"),
              ("no second camera", r'frames_right = "right320"\n', "", "frames_right"),
              ("watch period too long", r"watch_period_ms = 1000", "watch_period_ms = 4294968", "watch_period_ms"),
+             ("watched outside", r"watch_period_ms = 1000", "watch_period_ms = 1000\nwatch = [[9999, 0, 1, 1]]", "watch"),
+             ("watched outside the picture", r"watch_period_ms = 1000", "watch_period_ms = 1000\nwatch = [[639, 0, 1, 1]]", "watch"),
              ("a line without end", r"\[site\]", "a" + ".a" * 60000 + " = 1\n[site]", "longer"),
              ("no ground truth", r'truth = "truth160"', 'truth = "nowhere"', "nowhere"),
              ("missing recordings", r'frames = "left160"', 'frames = "nowhere"', "nowhere"))

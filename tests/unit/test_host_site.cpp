@@ -51,6 +51,7 @@ role = "lead"
 parent = 2
 frames = "left160"
 watch_period_ms = 500
+watch = [[0, 8, 32, 16], [159, 119, 1, 1]]
 
 [[node]]
 id = 4
@@ -117,6 +118,11 @@ TEST(HostSite, ReadsEveryField)
     EXPECT_EQ(site.node(2)->name, "attic");
     EXPECT_EQ(site.node(2)->position_m[1], 2.5);
     EXPECT_EQ(site.node(3)->watch_period_ms, 500u);
+    ASSERT_EQ(site.node(3)->watch.size(), 2u);
+    EXPECT_EQ(site.node(3)->watch[0].y, 8);
+    EXPECT_EQ(site.node(3)->watch[0].width, 32);
+    EXPECT_EQ(site.node(3)->watch[1].x, 159);
+    EXPECT_EQ(site.node(3)->watch[1].height, 1);
     EXPECT_EQ(site.node(9), nullptr);
     EXPECT_EQ(site.gateway().id, 1);
     ASSERT_EQ(site.pairs.size(), 1u);
@@ -142,6 +148,12 @@ TEST(HostSite, WritesWhatItReads)
     site.radio.fading_period_ms = 333;
     site.radio.capture_db = 0.5;
     site.radio.cca_threshold_dbm = -77;
+    const std::uint16_t lead = site.pairs[0].lead;
+    for (SiteNode &node : site.nodes) {
+        if (node.id == lead) {
+            node.watch = {{1, 2, 3, 4}, {0, 0, site.pairs[0].width, site.pairs[0].height}};
+        }
+    }
     write_site(folder / "site.toml", site);
     const Site read = load_site(folder / "site.toml");
     write_site(folder / "again.toml", read);
@@ -156,6 +168,8 @@ TEST(HostSite, WritesWhatItReads)
     EXPECT_EQ(read.radio.cca_threshold_dbm, -77.0);
     EXPECT_EQ(read.pairs[0].left.rotation, site.pairs[0].left.rotation);
     EXPECT_EQ(read.pairs[0].d0_px, 1.5);
+    ASSERT_EQ(read.node(lead)->watch.size(), 2u);
+    EXPECT_EQ(read.node(lead)->watch[0].height, 4);
     EXPECT_TRUE(read.pairs[1].right.has_value());
 }
 
@@ -191,6 +205,27 @@ TEST(HostSite, RefusesRadiosThatCannotBe)
     Site site = small_site();
     site.radio.cca_threshold_dbm = site.radio.sensitivity_dbm - 1;
     EXPECT_THROW(check_site(site), InputError);
+}
+
+TEST(HostSite, RefusesRectanglesThatCannotBeWatched)
+{
+    const std::string good = "watch = [[0, 8, 32, 16], [159, 119, 1, 1]]";
+    const std::string at = "node 3: watch: ";
+    EXPECT_SITE_REFUSED(with(good, "watch = 7"), at + "is not a list of lists");
+    EXPECT_SITE_REFUSED(with(good, "watch = [0, 8, 32, 16]"), at + "is not a list of lists");
+    EXPECT_SITE_REFUSED(with(good, "watch = [[0, 8, 32]]"), at + "element 1 is not a list of 4 whole numbers");
+    EXPECT_SITE_REFUSED(with(good, "watch = [[0, 8, 32, 16], [0, 8, 32, 1.5]]"),
+                        at + "element 2: number 4 is not a whole number in 0..640");
+    EXPECT_SITE_REFUSED(with(good, "watch = [[-1, 8, 32, 16]]"), at + "element 1: number 1 is not");
+    EXPECT_SITE_REFUSED(with(good, "watch = [[129, 8, 32, 16]]"),
+                        at + "[129, 8, 32, 16] is not a rectangle x, y, width, height inside the pair's 160x120");
+    EXPECT_SITE_REFUSED(with(good, "watch = [[0, 105, 32, 16]]"), at + "[0, 105, 32, 16] is not");
+    EXPECT_SITE_REFUSED(with(good, "watch = [[0, 8, 0, 16]]"), at + "[0, 8, 0, 16] is not");
+    EXPECT_SITE_REFUSED(with(good, "watch = [[0, 8, 32, 0]]"), at + "[0, 8, 32, 0] is not");
+    EXPECT_SITE_REFUSED(with(good, "watch = [[0,0,1,1],[0,0,1,1],[0,0,1,1],[0,0,1,1],[0,0,1,1]]"),
+                        at + "5 rectangles, not at most 4");
+    EXPECT_SITE_REFUSED(with("role = \"relay\"", "role = \"relay\"\nwatch = [[0, 0, 1, 1]]"),
+                        "node 2: watch: a relay does not watch");
 }
 
 TEST(HostSite, RefusesTreesThatCannotWork)

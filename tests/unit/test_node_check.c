@@ -114,6 +114,7 @@ static void test_camera_fields(void)
         REFUSE(cameras[i], config.match.window = 4, "window");
         REFUSE(cameras[i], config.match.mode = TSR_MATCH_CENSUS, "mode"); /* a node runs the SAD modes */
         REFUSE(cameras[i], config.change.reduction = 3, "reduction");
+        REFUSE(cameras[i], config.change.watched_count = 1, "watched");
         REFUSE(cameras[i], config.similarity.block_log2 = 5, "block_log2");
         REFUSE(cameras[i], config.step_log2 = 5, "step_log2");
         REFUSE(cameras[i], config.reference_step = 64, "reference_step");

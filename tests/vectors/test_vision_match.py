@@ -18,7 +18,7 @@ except ImportError:
 SOURCE = pathlib.Path(os.environ.get("TSR_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
 sys.path.insert(0, str(SOURCE / "tests" / "support"))
 import vision_reference as reference  # noqa: E402
-from vision_library import (AGAIN, LIB, OK, SIZE, STATE_LEN, U8, U16, ChangeConfig, ChangeResult, Gray,  # noqa: E402
+from vision_library import (AGAIN, LIB, OK, SIZE, STATE_LEN, U8, U16, Gray,  # noqa: E402
                             MatchConfig, SimilarityConfig, SimilarityResult, pointer, portable_kernel)
 import vision_library  # noqa: E402
 
@@ -171,41 +171,8 @@ def test_similarity():
             assert similar == (wanted[4] < config.min_blocks)
 
 
-def frames_of_a_day(height, width):
-    scene = RNG.integers(0, 256, (height, width)).astype(float)
-    for i in range(40):
-        frame = scene + RNG.normal(0, RNG.choice([0, 2, 20]), scene.shape) + i * RNG.choice([0, 1])
-        if i > 20:
-            frame[: height // 2, width // 3:] = 255 - frame[: height // 2, width // 3:]
-        yield np.clip(np.rint(frame), 0, 255).astype(np.uint8)
-
-
-def test_change():
-    for height, width in ((8, 8), (30, 41), (64, 80)):
-        for reduction in (2, 4, 8):
-            cells = (height // reduction) * (width // reduction)
-            settings = (reduction, int(RNG.integers(1, 9)), int(RNG.integers(1, 30)), int(RNG.integers(30, 256)),
-                        int(RNG.integers(1, cells + 1)), int(RNG.integers(1, 8)))
-            config = ChangeConfig(width, height, *settings)
-            wanted = reference.Change(*settings)
-            change, state = np.zeros(STATE_LEN, np.uint8), RNG.integers(0, 256, 2 * cells, np.uint8)
-            assert LIB.tsr_change_init(pointer(change), ctypes.byref(config), pointer(state), SIZE(state.size)) == OK
-            for frame in frames_of_a_day(height, width):
-                rows = padded(frame, width + int(RNG.integers(0, 5)))
-                view = Gray(rows.ctypes.data, width, height, rows.shape[1])
-                if RNG.random() < 0.15:
-                    wanted.rebase(frame)
-                    assert LIB.tsr_change_rebase(pointer(change), ctypes.byref(view)) == OK
-                else:
-                    result = ChangeResult()
-                    assert LIB.tsr_change_update(pointer(change), ctypes.byref(view), ctypes.byref(result)) == OK
-                    got = (result.changed, result.settling, result.changed_cells)
-                    assert got == wanted.update(frame), (settings, height, width)
-                assert np.array_equal(state, np.concatenate([wanted.mean.ravel(), wanted.deviation.ravel()]))
-
-
 if __name__ == "__main__":
     print(f"replay: SEED={SEED} python3 tests/vectors/test_vision_match.py")
-    for test in (test_match, test_median, test_quantise, test_similarity, test_change):
+    for test in (test_match, test_median, test_quantise, test_similarity):
         test()
         print(f"{test.__name__}: passed")

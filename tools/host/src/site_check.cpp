@@ -61,6 +61,9 @@ NodeIndex index_nodes(const Site &site)
         if (!node.frames_right.empty() && node.role != Role::binocular) {
             refuse_node(site, node, "frames_right", "only a binocular node has a right camera");
         }
+        if (!node.watch.empty() && node.role != Role::lead && node.role != Role::binocular) {
+            refuse_node(site, node, "watch", "a " + std::string(role_name(node.role)) + " does not watch");
+        }
         if (node.role == Role::binocular && node.frames.empty() != node.frames_right.empty()) {
             refuse_node(site, node, "frames_right", "frames and frames_right come together");
         }
@@ -157,6 +160,24 @@ void check_pair_nodes(const Site &site, const SitePair &pair, const NodeIndex &i
     }
 }
 
+void check_watch(const Site &site, const SiteNode &node, const SitePair &pair)
+{
+    if (node.watch.size() > kWatchMax) {
+        refuse_node(site, node, "watch",
+                    std::to_string(node.watch.size()) + " rectangles, not at most " + std::to_string(kWatchMax));
+    }
+    for (const SiteRectangle &area : node.watch) {
+        if (area.x < 0 || area.y < 0 || area.width < 1 || area.height < 1 || area.x > pair.width - area.width ||
+            area.y > pair.height - area.height) {
+            refuse_node(site, node, "watch",
+                        "[" + std::to_string(area.x) + ", " + std::to_string(area.y) + ", " +
+                            std::to_string(area.width) + ", " + std::to_string(area.height) +
+                            "] is not a rectangle x, y, width, height inside the pair's " + std::to_string(pair.width) +
+                            "x" + std::to_string(pair.height));
+        }
+    }
+}
+
 void check_pair_numbers(const Site &site, const SitePair &pair)
 {
     if (const std::string fault = fault_in_name(pair.name); !fault.empty()) {
@@ -202,6 +223,7 @@ void check_pairs(const Site &site, const NodeIndex &index)
     for (const SitePair &pair : site.pairs) {
         check_pair_numbers(site, pair);
         check_pair_nodes(site, pair, index);
+        check_watch(site, *index.at(pair.lead), pair);
         check_pair_geometry(site, pair);
         if (!names.insert(pair.name).second) {
             refuse_pair(site, pair, "name", "is used twice");

@@ -13,6 +13,7 @@ namespace
 {
 
 constexpr double kAnyLarge = 1e9;
+constexpr int kWatchSideMax = 640; /* the widest picture; the pair's own is checked later */
 
 void read_site(TomlFields &fields, Site &site)
 {
@@ -54,6 +55,9 @@ SiteNode read_node(TomlFields &fields)
     node.frames_right = fields.string("frames_right", "");
     node.watch_period_ms =
         static_cast<std::uint32_t>(fields.integer("watch_period_ms", 1, kWatchPeriodMsMax, node.watch_period_ms));
+    for (const auto &[x, y, width, height] : fields.lists<4>("watch", 0, kWatchSideMax)) {
+        node.watch.push_back({x, y, width, height});
+    }
     fields.refuse_unknown();
     return node;
 }
@@ -144,7 +148,7 @@ void read_thresholds(TomlFields &fields, SiteThresholds &limits)
         static_cast<int>(fields.integer("similarity_blocks", 0, 65535, limits.similarity_blocks));
     limits.similarity_overlap_min = fields.number("similarity_overlap_min", 0, 1, limits.similarity_overlap_min);
     limits.change_deviation_min =
-        static_cast<int>(fields.integer("change_deviation_min", 1, 127, limits.change_deviation_min));
+        static_cast<int>(fields.integer("change_deviation_min", 1, 64, limits.change_deviation_min));
     limits.change_cells_min = static_cast<int>(fields.integer("change_cells_min", 0, 65535, limits.change_cells_min));
     fields.refuse_unknown();
 }

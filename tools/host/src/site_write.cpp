@@ -99,7 +99,13 @@ std::string node_text(const SiteNode &node)
     if (!node.frames_right.empty()) {
         text += line("frames_right", quoted(node.frames_right.string()));
     }
-    return text + line("watch_period_ms", std::to_string(node.watch_period_ms));
+    text += line("watch_period_ms", std::to_string(node.watch_period_ms));
+    std::string watch;
+    for (const SiteRectangle &area : node.watch) {
+        const std::array<double, 4> values{double(area.x), double(area.y), double(area.width), double(area.height)};
+        watch += (watch.empty() ? "" : ", ") + list(values);
+    }
+    return watch.empty() ? text : text + line("watch", "[" + watch + "]");
 }
 
 std::string pose_text(const std::string &side, const SitePose &pose)

@@ -179,6 +179,37 @@ void TomlFields::numbers(std::string_view field, double *values, std::size_t cou
     }
 }
 
+std::size_t TomlFields::count_lists(std::string_view field)
+{
+    const toml::node *node = find(field);
+    if (node == nullptr) {
+        return 0;
+    }
+    const toml::array *array = node->as_array();
+    if (array == nullptr || !(array->empty() || array->is_homogeneous(toml::node_type::array))) {
+        refuse(field, "is not a list of lists");
+    }
+    return array->size();
+}
+
+void TomlFields::list(std::string_view field, std::size_t index, int *values, std::size_t count, int minimum,
+                      int maximum)
+{
+    const toml::array &inner = *required(field).as_array()->get(index)->as_array();
+    const std::string which = "element " + std::to_string(index + 1);
+    if (inner.size() != count) {
+        refuse(field, which + " is not a list of " + std::to_string(count) + " whole numbers");
+    }
+    for (std::size_t i = 0; i < count; i++) {
+        const auto *value = inner.get(i)->as_integer();
+        if (value == nullptr || value->get() < minimum || value->get() > maximum) {
+            refuse(field, which + ": number " + std::to_string(i + 1) + " is not a whole number in " +
+                              std::to_string(minimum) + ".." + std::to_string(maximum));
+        }
+        values[i] = static_cast<int>(value->get());
+    }
+}
+
 std::unique_ptr<TomlFields> TomlFields::table(std::string_view field)
 {
     const toml::node *node = find(field);

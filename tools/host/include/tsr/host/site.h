@@ -63,8 +63,17 @@ struct SiteThresholds {
     double similarity_clip_px = 2.0;     /* a difference counts as at most this, 1/16 .. 15.9375 */
     int similarity_blocks = 0;           /* differing blocks that make two maps differ; 0 = by the map's size */
     double similarity_overlap_min = 0.5; /* sink: below this part of pixels valid in both, of those in either: differ */
-    int change_deviation_min = 6;        /* gray levels, 1 .. 127 */
-    int change_cells_min = 0;            /* changed cells that wake the pair; 0 = the node's default */
+    int change_deviation_min = 5;        /* gray levels, 1 .. 64 */
+    int change_cells_min = 0;            /* touching cells that wake the pair; 0 = the node's default */
+};
+
+constexpr std::size_t kWatchMax = 4; /* rectangles */
+
+struct SiteRectangle { /* px of the left camera's picture */
+    int x = 0;
+    int y = 0;
+    int width = 0;
+    int height = 0;
 };
 
 struct SiteNode {
@@ -76,7 +85,8 @@ struct SiteNode {
     std::filesystem::path frames;       /* folder of the lead's, wing's or left camera's frames; may be empty */
     std::filesystem::path frames_right; /* binocular only */
     std::uint32_t watch_period_ms = 1000;
-    int line = 0; /* in site.toml; 0 = built in memory */
+    std::vector<SiteRectangle> watch; /* lead, binocular: where a change wakes; empty = everywhere */
+    int line = 0;                     /* in site.toml; 0 = built in memory */
 };
 
 struct SitePose {

@@ -50,6 +50,16 @@ class TomlFields
         return values;
     }
 
+    /* A list of lists of N whole numbers each, [[1, 2], [3, 4]]; empty if absent. */
+    template <std::size_t N> std::vector<std::array<int, N>> lists(std::string_view field, int minimum, int maximum)
+    {
+        std::vector<std::array<int, N>> values(count_lists(field));
+        for (std::size_t i = 0; i < values.size(); i++) {
+            list(field, i, values[i].data(), N, minimum, maximum);
+        }
+        return values;
+    }
+
     /* A sub-table; null if absent. */
     std::unique_ptr<TomlFields> table(std::string_view field);
     /* An array of tables, empty if absent. */
@@ -61,6 +71,8 @@ class TomlFields
 
   private:
     const toml::node *find(std::string_view field);
+    std::size_t count_lists(std::string_view field);
+    void list(std::string_view field, std::size_t index, int *values, std::size_t count, int minimum, int maximum);
     const toml::node &required(std::string_view field);
     std::string path(std::string_view field) const;
 
