@@ -95,7 +95,8 @@ void Simulation::run(const Progress &progress)
         node->start();
     }
     /* Every watching node sees the last frame at least once, and however short a recording is, there is a first map. */
-    const std::uint64_t played_us = std::max(pictures_.end_us() + 2 * longest_period_us, kFirstMapFrames * longest_period_us);
+    const std::uint64_t played_us =
+        std::max(pictures_.end_us() + 2 * longest_period_us, kFirstMapFrames * longest_period_us);
     const std::uint64_t latest_us = played_us + kPatienceUs;
     while (!queue_.empty() && queue_.next_us() <= latest_us) {
         if (queue_.next_us() > played_us && quiet()) {

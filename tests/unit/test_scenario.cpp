@@ -81,10 +81,13 @@ TEST_F(ScenarioFile, ASettingIsNamedInItsRefusal)
 
 TEST_F(ScenarioFile, RefusesImpossibleGeometry)
 {
-    EXPECT_NE(refusal(std::string(kTank) + "[pairs]\ncount = 4\ndistance_m = 1.25\nheights_m = [0.8, 0.8]\n").find("is inside the"),
+    EXPECT_NE(refusal(std::string(kTank) + "[pairs]\ncount = 4\ndistance_m = 1.25\nheights_m = [0.8, 0.8]\n")
+                  .find("is inside the"),
               std::string::npos);
-    EXPECT_NE(refusal(std::string(kTank) + "[pairs]\nangle_deg = 70\n").find("share less than a fifth"), std::string::npos);
-    EXPECT_NE(refusal(std::string(kTank) + "[camera]\ndistortion = [-3, 0, 0, 0]\n").find("the image folds"), std::string::npos);
+    EXPECT_NE(refusal(std::string(kTank) + "[pairs]\nangle_deg = 70\n").find("share less than a fifth"),
+              std::string::npos);
+    EXPECT_NE(refusal(std::string(kTank) + "[camera]\ndistortion = [-3, 0, 0, 0]\n").find("the image folds"),
+              std::string::npos);
 }
 
 TEST_F(ScenarioFile, JoinsABinaryTree)

@@ -72,12 +72,14 @@ TEST(SceneView, TheSunCastsShadows)
     View view(geometry, camera);
     const Layers &layers = view.render(caster, 0);
     const auto lit_at = [&](double x, double y) { /* floor point to pixel */
-        const Eigen::Vector2d pixel = projected(camera, camera.pose.inverse() * Eigen::Vector3d(x, y, 0));
-        return layers.sun[static_cast<std::size_t>(std::lround(pixel.y()) * camera.width + std::lround(pixel.x()))];
+                                                  const Eigen::Vector2d pixel = projected(
+                                                      camera, camera.pose.inverse() * Eigen::Vector3d(x, y, 0));
+                                                  return layers.sun[static_cast<std::size_t>(
+                                                      std::lround(pixel.y()) * camera.width + std::lround(pixel.x()))];
     };
-    EXPECT_FLOAT_EQ(lit_at(0.5, 0), 0);                            /* 2 m high: the shadow ends at x = 1 */
-    EXPECT_NEAR(lit_at(1.6, 0), 0.5 * std::sqrt(0.5), 1e-3);       /* beyond it */
-    EXPECT_NEAR(lit_at(0.5, 0.9), 0.5 * std::sqrt(0.5), 1e-3);     /* beside it */
+    EXPECT_FLOAT_EQ(lit_at(0.5, 0), 0);                        /* 2 m high: the shadow ends at x = 1 */
+    EXPECT_NEAR(lit_at(1.6, 0), 0.5 * std::sqrt(0.5), 1e-3);   /* beyond it */
+    EXPECT_NEAR(lit_at(0.5, 0.9), 0.5 * std::sqrt(0.5), 1e-3); /* beside it */
 }
 
 void expect_same(const Layers &a, const Layers &b, const char *where)
@@ -158,6 +160,7 @@ TEST_P(SceneKinds, FollowsItsSeed)
     EXPECT_NE(vertices(3), vertices(4));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, SceneKinds, testing::ValuesIn(scene_kinds()), [](const auto &info) { return info.param; });
+INSTANTIATE_TEST_SUITE_P(All, SceneKinds, testing::ValuesIn(scene_kinds()),
+                         [](const auto &info) { return info.param; });
 
 } // namespace

@@ -18,8 +18,8 @@ namespace
 constexpr double kOverlapMin = 0.2; /* of the width, that both cameras see of what is far away */
 constexpr float kClearanceM = 0.05F;
 
-/* The thing a camera is in, or touches; empty if none. Rays from inside a solid meet its back; leaves, which have no inside, have a back too, so
- * most of the six rays must. */
+/* The thing a camera is in, or touches; empty if none. Rays from inside a solid meet its back; leaves, which have no
+ * inside, have a back too, so most of the six rays must. */
 std::string thing_around(const scene::World &world, const scene::RayCaster &caster, const Eigen::Vector3f &eye)
 {
     int backs = 0;
@@ -52,12 +52,14 @@ void refuse_impossible(const Scenario &scenario, const Staging &staging)
     const std::string file = scenario.file.string();
     const StagedCamera &left = staging.cameras[0], &right = staging.cameras[1];
     if (!scene::is_invertible(left.camera)) {
-        throw InputError(file, "camera.distortion", "the image folds: no point of the scene belongs to some of its pixels");
+        throw InputError(file, "camera.distortion",
+                         "the image folds: no point of the scene belongs to some of its pixels");
     }
     const double shift = std::abs(right.camera.principal_px.x() - left.camera.principal_px.x());
     if (scenario.pairs.angle_deg >= 90 || shift > (1 - kOverlapMin) * scenario.pairs.width) {
         throw InputError(file, "pairs.angle_deg",
-                         number(scenario.pairs.angle_deg) + " degrees: the two views of a pair share less than a fifth of their width");
+                         number(scenario.pairs.angle_deg) +
+                             " degrees: the two views of a pair share less than a fifth of their width");
     }
     scene::RayCaster caster(*staging.geometry);
     for (const StagedCamera &camera : staging.cameras) {
@@ -65,8 +67,9 @@ void refuse_impossible(const Scenario &scenario, const Staging &staging)
         const std::string thing = thing_around(staging.scene->world, caster, eye);
         if (!thing.empty()) {
             throw InputError(file, "pairs",
-                             "camera " + std::to_string(camera.node) + (camera.right ? " right" : " left") + " at (" + number(eye.x()) + ", " +
-                                 number(eye.y()) + ", " + number(eye.z()) + ") m is inside the " + thing);
+                             "camera " + std::to_string(camera.node) + (camera.right ? " right" : " left") + " at (" +
+                                 number(eye.x()) + ", " + number(eye.y()) + ", " + number(eye.z()) +
+                                 ") m is inside the " + thing);
         }
     }
 }

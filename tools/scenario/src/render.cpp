@@ -93,9 +93,11 @@ class PairWriter
   public:
     PairWriter(const Scenario &scenario, const Staging &staging, std::size_t pair, fs::path folder)
         : pair_(staging.site.pairs[pair]), folder_(std::move(folder)),
-          left_(scenario, staging, staging.cameras[2 * pair]), right_(scenario, staging, staging.cameras[2 * pair + 1]),
-          image_{pair_.width, pair_.height,
-                 std::vector<std::uint8_t>(static_cast<std::size_t>(pair_.width) * static_cast<std::size_t>(pair_.height))}
+          left_(scenario, staging, staging.cameras[2 * pair]),
+          right_(scenario, staging, staging.cameras[2 * pair + 1]), image_{pair_.width, pair_.height,
+                                                                           std::vector<std::uint8_t>(
+                                                                               static_cast<std::size_t>(pair_.width) *
+                                                                               static_cast<std::size_t>(pair_.height))}
     {
         if (!scenario.pairs.two_boards) {
             right_.follow(left_);
@@ -178,11 +180,12 @@ void write_playable_site(const fs::path &folder, Site site)
     write_site(folder / "site.toml", site);
 }
 
-void render_pairs(const Scenario &scenario, const Staging &staging, const RenderOptions &options, const fs::path &folder,
-                  std::size_t frames, std::uint32_t period_ms, Work &work)
+void render_pairs(const Scenario &scenario, const Staging &staging, const RenderOptions &options,
+                  const fs::path &folder, std::size_t frames, std::uint32_t period_ms, Work &work)
 {
     scene::RayCaster caster(*staging.geometry);
-    for (std::size_t pair = work.next_pair++; pair < staging.site.pairs.size() && !work.stopped; pair = work.next_pair++) {
+    for (std::size_t pair = work.next_pair++; pair < staging.site.pairs.size() && !work.stopped;
+         pair = work.next_pair++) {
         PairWriter writer(scenario, staging, pair, folder / pair_folder(pair));
         for (std::size_t i = 0; i < frames && !work.stopped; ++i) {
             writer.write(caster, i, static_cast<std::uint64_t>(i) * period_ms * 1000);

@@ -66,8 +66,9 @@ FloatImage true_disparity(const SitePair &pair, const scene::Truth &truth)
     FloatImage image{pair.width, pair.height, {}};
     const double focal_baseline = pair.focal_px * pair.baseline_mm / 1000;
     for (const float depth_m : truth.depth_m) {
-        image.pixels.push_back(depth_m > 0 ? static_cast<float>(focal_baseline / static_cast<double>(depth_m) - pair.d0_px)
-                                           : kFloatInvalid);
+        image.pixels.push_back(depth_m > 0
+                                   ? static_cast<float>(focal_baseline / static_cast<double>(depth_m) - pair.d0_px)
+                                   : kFloatInvalid);
     }
     return image;
 }

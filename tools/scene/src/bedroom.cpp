@@ -27,9 +27,11 @@ void add_shell(World &world)
     const SurfaceId parquet = world.add_surface({Pattern::planks, 0.36F, 0.15F, 0.12F, 0.35F, 63});
     const SurfaceId white = world.add_surface({Pattern::plain, 0.8F, 0, 0.3F, 0.06F, 64});
     world.add(world.add_object("floor"), make_box({-kX - 2, -kY - 2, -0.2F}, {kX + 2, kY + 1, 0}, parquet));
-    world.add(world.add_object("ceiling"), make_box({-kX - 0.2F, -kY - 0.2F, kHigh}, {kX + 0.2F, kY + 0.2F, kHigh + 0.2F}, plaster));
+    world.add(world.add_object("ceiling"),
+              make_box({-kX - 0.2F, -kY - 0.2F, kHigh}, {kX + 0.2F, kY + 0.2F, kHigh + 0.2F}, plaster));
     const ObjectId walls = world.add_object("wall");
-    const Mesh south = make_wall(2 * kX + 2 * kWall, kHigh, kWall, {{kX + kWall + kDoorX - kDoorWide / 2, 0, kDoorWide, 2.05F}}, plaster);
+    const Mesh south = make_wall(2 * kX + 2 * kWall, kHigh, kWall,
+                                 {{kX + kWall + kDoorX - kDoorWide / 2, 0, kDoorWide, 2.05F}}, plaster);
     world.add(walls, shifted(south, -kX - kWall, -kY - kWall, 0));
     const Mesh north = make_wall(2 * kX + 2 * kWall, kHigh, kWall, {{1.5F, 0.95F, 1.5F, 1.25F}}, paper);
     world.add(walls, shifted(north, -kX - kWall, kY, 0));
@@ -97,15 +99,17 @@ void add_furniture(World &world, const SceneOptions &options)
             const float thick = chance.between(0.02F, 0.06F), tall = chance.between(0.16F, 0.26F);
             const SurfaceId cover = world.add_surface({Pattern::plain, chance.between(0.08F, 0.75F), 0, 0.06F, 0.4F,
                                                        static_cast<std::uint32_t>(chance.whole(0, 1 << 20))});
-            world.add(books, make_box({kX - chance.between(0.15F, 0.22F), y, z + 0.025F}, {kX - 0.01F, y + thick, z + 0.025F + tall}, cover));
-            y += thick + (chance.whole(0, 6) == 0 ? chance.between(0.05F, 0.2F) : 0.003F) / static_cast<float>(options.clutter);
+            world.add(books, make_box({kX - chance.between(0.15F, 0.22F), y, z + 0.025F},
+                                      {kX - 0.01F, y + thick, z + 0.025F + tall}, cover));
+            y += thick +
+                 (chance.whole(0, 6) == 0 ? chance.between(0.05F, 0.2F) : 0.003F) / static_cast<float>(options.clutter);
         }
     }
     const ObjectId clutter = world.add_object("clutter");
     for (int i = 0; i < static_cast<int>(8 * options.clutter); ++i) { /* under the window and on the desk */
-        const SurfaceId surface = world.add_surface({i % 2 == 0 ? Pattern::patches : Pattern::stripes, chance.between(0.3F, 0.75F),
-                                                     chance.between(0.08F, 0.3F), chance.between(0.04F, 0.12F), 0.4F,
-                                                     static_cast<std::uint32_t>(900 + i)});
+        const SurfaceId surface = world.add_surface(
+            {i % 2 == 0 ? Pattern::patches : Pattern::stripes, chance.between(0.3F, 0.75F), chance.between(0.08F, 0.3F),
+             chance.between(0.04F, 0.12F), 0.4F, static_cast<std::uint32_t>(900 + i)});
         const float side = chance.between(0.08F, 0.3F);
         const bool on_desk = i % 3 == 0;
         const float x = on_desk ? kX - chance.between(0.15F, 0.45F) : chance.between(-1.8F, 0.9F);
@@ -210,7 +214,8 @@ void add_people(World &world, const SceneOptions &options)
         visit.walk(kDoorX - 0.1F, -kY + 0.5F + 0.2F * static_cast<float>(i % 3));
         visit.rest(0.05 * options.duration_s);
         visit.walk(kDoorX, -kY - 1.5F - 0.5F * static_cast<float>(i));
-        add_person(world, "person " + std::to_string(i + 1), visit.keys(), make_clothes(world, static_cast<std::uint32_t>(5 + 7 * i)),
+        add_person(world, "person " + std::to_string(i + 1), visit.keys(),
+                   make_clothes(world, static_cast<std::uint32_t>(5 + 7 * i)),
                    {.height_m = 1.6F + 0.05F * static_cast<float>(i % 5)});
     }
 }

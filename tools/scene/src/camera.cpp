@@ -12,7 +12,7 @@ namespace
 {
 
 constexpr int kIterations = 20;
-constexpr int kCheckedPx = 4;       /* every so many pixels */
+constexpr int kCheckedPx = 4; /* every so many pixels */
 constexpr double kTolerancePx = 0.01;
 
 Eigen::Vector2d distorted(const std::array<double, 4> &k, const Eigen::Vector2d &p)

@@ -77,8 +77,7 @@ void Mesh::append(const Mesh &other)
     surfaces.insert(surfaces.end(), other.surfaces.begin(), other.surfaces.end());
 }
 
-void Mesh::add_triangle(const Eigen::Vector3f &a, const Eigen::Vector3f &b, const Eigen::Vector3f &c,
-                        SurfaceId surface)
+void Mesh::add_triangle(const Eigen::Vector3f &a, const Eigen::Vector3f &b, const Eigen::Vector3f &c, SurfaceId surface)
 {
     const auto first = static_cast<std::uint32_t>(vertices.size());
     vertices.insert(vertices.end(), {a, b, c});

@@ -58,7 +58,8 @@ Eigen::Affine3f pose_of(const Path::Place &place)
 
 Motion follow(Path path)
 {
-    return [path = std::make_shared<const Path>(std::move(path))](std::uint64_t time_us) -> std::optional<Eigen::Affine3f> {
+    return [path = std::make_shared<const Path>(std::move(path))](
+               std::uint64_t time_us) -> std::optional<Eigen::Affine3f> {
         const auto place = path->at(time_us);
         return place ? std::optional(pose_of(*place)) : std::nullopt;
     };

@@ -43,12 +43,9 @@ struct Pose {
 Pose pose_of(Posture posture)
 {
     switch (posture) {
-    case Posture::sitting:
-        return {0.30F, -5, 85, 0, 30, 75};
-    case Posture::lying:
-        return {0.07F, -90, -88, -90, -80, -85};
-    case Posture::standing:
-        break;
+    case Posture::sitting: return {0.30F, -5, 85, 0, 30, 75};
+    case Posture::lying: return {0.07F, -90, -88, -90, -80, -85};
+    case Posture::standing: break;
     }
     return {0.52F, 2, 0, 0, 0, 10};
 }
@@ -56,8 +53,12 @@ Pose pose_of(Posture posture)
 Pose blend(const Pose &a, const Pose &b, float share)
 {
     const auto mix = [share](float x, float y) { return x + share * (y - x); };
-    return {mix(a.hip_height, b.hip_height), mix(a.torso, b.torso), mix(a.thigh, b.thigh),
-            mix(a.shin, b.shin),             mix(a.arm, b.arm),     mix(a.forearm, b.forearm)};
+    return {mix(a.hip_height, b.hip_height),
+            mix(a.torso, b.torso),
+            mix(a.thigh, b.thigh),
+            mix(a.shin, b.shin),
+            mix(a.arm, b.arm),
+            mix(a.forearm, b.forearm)};
 }
 
 /* A limb hangs along -z; a positive angle swings its end forward, along +x. */
@@ -97,21 +98,23 @@ std::array<Mesh, kPartCount> part_meshes(float height, const Clothes &clothes)
 {
     std::array<Mesh, kPartCount> meshes;
     Eigen::Affine3f flat(Eigen::Scaling(0.7F, 1.0F, 1.0F)); /* a chest is wider than deep */
-    meshes[kTorso] = moved(shifted(make_limb(0.115F * height, 0.095F * height, 0.26F * height, kSides, clothes.top), 0, 0,
-                                   0.27F * height), flat);
+    meshes[kTorso] = moved(
+        shifted(make_limb(0.115F * height, 0.095F * height, 0.26F * height, kSides, clothes.top), 0, 0, 0.27F * height),
+        flat);
     meshes[kHead] = make_ellipsoid({0.055F * height, 0.045F * height, 0.065F * height}, kSides, clothes.skin);
-    meshes[kHead].append(shifted(make_ellipsoid({0.055F * height, 0.05F * height, 0.05F * height}, kSides, clothes.hair),
-                                 -0.012F * height, 0, 0.027F * height));
-    meshes[kHead].append(shifted(make_cylinder(0.03F * height, 0.03F * height, 0.06F * height, kSides, clothes.skin), 0, 0,
-                                 -0.1F * height));
+    meshes[kHead].append(
+        shifted(make_ellipsoid({0.055F * height, 0.05F * height, 0.05F * height}, kSides, clothes.hair),
+                -0.012F * height, 0, 0.027F * height));
+    meshes[kHead].append(shifted(make_cylinder(0.03F * height, 0.03F * height, 0.06F * height, kSides, clothes.skin), 0,
+                                 0, -0.1F * height));
     for (int side = 0; side < 2; ++side) {
         const auto part = [side](Part left) { return static_cast<std::size_t>(left + side); };
         meshes[part(kArmLeft)] = make_limb(0.034F * height, 0.028F * height, 0.17F * height, kSides, clothes.top);
         meshes[part(kForearmLeft)] = make_limb(0.027F * height, 0.022F * height, 0.18F * height, kSides, clothes.skin);
         meshes[part(kThighLeft)] = make_limb(0.055F * height, 0.04F * height, 0.25F * height, kSides, clothes.trousers);
         meshes[part(kShinLeft)] = make_limb(0.038F * height, 0.026F * height, 0.25F * height, kSides, clothes.trousers);
-        meshes[part(kShinLeft)].append(
-            make_centred_box({0.04F * height, 0, -0.262F * height}, {0.15F * height, 0.055F * height, 0.04F * height}, clothes.hair));
+        meshes[part(kShinLeft)].append(make_centred_box(
+            {0.04F * height, 0, -0.262F * height}, {0.15F * height, 0.055F * height, 0.04F * height}, clothes.hair));
     }
     return meshes;
 }
@@ -138,7 +141,8 @@ ObjectId add_person(World &world, const std::string &name, const std::vector<Per
                           return std::nullopt;
                       }
                       const std::size_t next = std::min(place->key + 1, postures->size() - 1);
-                      const Pose pose = blend(pose_of((*postures)[place->key]), pose_of((*postures)[next]), place->share);
+                      const Pose pose =
+                          blend(pose_of((*postures)[place->key]), pose_of((*postures)[next]), place->share);
                       return skeleton_of(*place, pose, height)[part];
                   });
     }
@@ -148,13 +152,15 @@ ObjectId add_person(World &world, const std::string &name, const std::vector<Per
 Clothes make_clothes(World &world, std::uint32_t seed)
 {
     const auto shade = [&](std::uint32_t part) { /* 0 .. 1, a golden-ratio sequence: no two near each other */
-        return static_cast<float>((seed * 4 + part) * 0x9e3779b1U >> 8) / 16777216.0F;
+                                                 return static_cast<float>((seed * 4 + part) * 0x9e3779b1U >> 8) /
+                                                        16777216.0F;
     };
     Clothes clothes;
     clothes.skin = world.add_surface({Pattern::plain, 0.35F + 0.3F * shade(0), 0, 0.1F, 0.15F, seed});
     clothes.hair = world.add_surface({Pattern::plain, 0.06F + 0.2F * shade(1), 0, 0.05F, 0.4F, seed + 1});
     const float top = 0.12F + 0.6F * shade(2), trousers = 0.08F + 0.3F * shade(3);
-    clothes.top = world.add_surface({seed % 3 == 0 ? Pattern::stripes : Pattern::plain, top, top * 0.5F, 0.12F, 0.35F, seed + 2});
+    clothes.top =
+        world.add_surface({seed % 3 == 0 ? Pattern::stripes : Pattern::plain, top, top * 0.5F, 0.12F, 0.35F, seed + 2});
     clothes.trousers = world.add_surface({Pattern::plain, trousers, 0, 0.15F, 0.35F, seed + 3});
     return clothes;
 }

@@ -187,8 +187,7 @@ void RayCaster::set_time(std::uint64_t time_us, std::uint32_t span_us)
     rtcCommitScene(parts_->scene);
 }
 
-std::optional<Hit> RayCaster::trace(const Eigen::Vector3f &origin, const Eigen::Vector3f &direction,
-                                    float moment) const
+std::optional<Hit> RayCaster::trace(const Eigen::Vector3f &origin, const Eigen::Vector3f &direction, float moment) const
 {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);

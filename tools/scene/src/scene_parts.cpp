@@ -28,7 +28,8 @@ void add_leaf(Mesh &mesh, const Eigen::Vector3f &at, float size, SurfaceId leave
     mesh.add_quad(at - u - v, at + u - v, at + u + v, at - u + v, leaves);
 }
 
-void add_crown(Mesh &mesh, const Eigen::Vector3f &centre, float radius, int leaf_count, SurfaceId leaves, Chance &chance)
+void add_crown(Mesh &mesh, const Eigen::Vector3f &centre, float radius, int leaf_count, SurfaceId leaves,
+               Chance &chance)
 {
     for (int i = 0; i < leaf_count; ++i) {
         Eigen::Vector3f away;
@@ -82,7 +83,8 @@ std::function<Light(std::uint64_t)> make_daylight(const SceneOptions &options, f
         light.sky = sky * drift;
         light.sun = sun * drift;
         light.to_sun = {static_cast<float>(std::cos(azimuth) * std::cos(elevation)),
-                        static_cast<float>(std::sin(azimuth) * std::cos(elevation)), static_cast<float>(std::sin(elevation))};
+                        static_cast<float>(std::sin(azimuth) * std::cos(elevation)),
+                        static_cast<float>(std::sin(elevation))};
         light.to_sun = light.to_sun.unaryExpr([](float v) { return std::nearbyint(v * 65536.0F) / 65536.0F; });
         return light;
     };

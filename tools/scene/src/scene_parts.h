@@ -34,8 +34,8 @@ class Chance
 /* Light that grows and fades: a triangle of the period, smoothed, between 1 - drift and 1 + drift. */
 float drift_at(const SceneOptions &options, std::uint64_t time_us);
 
-/* Daylight of the given irradiances with the drift of options; the sun begins at azimuth and elevation (degrees) and goes west
- * by 15 degrees an hour. */
+/* Daylight of the given irradiances with the drift of options; the sun begins at azimuth and elevation (degrees) and
+ * goes west by 15 degrees an hour. */
 std::function<Light(std::uint64_t)> make_daylight(const SceneOptions &options, float sky, float sun, float azimuth_deg,
                                                   float elevation_deg);
 

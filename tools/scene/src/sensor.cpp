@@ -40,7 +40,8 @@ void Sensor::expose(const Camera &camera, const Layers &layers, const Light &lig
 {
     const float to_electrons = model_.full_well_e * exposure_;
     const float to_gray = 255 * gain_ / model_.full_well_e;
-    const float centre_x = static_cast<float>(camera.width - 1) / 2, centre_y = static_cast<float>(camera.height - 1) / 2;
+    const float centre_x = static_cast<float>(camera.width - 1) / 2,
+                centre_y = static_cast<float>(camera.height - 1) / 2;
     const float falloff = model_.vignetting / (centre_x * centre_x + centre_y * centre_y);
     const std::uint64_t stream = mix(model_.seed + captures_ * 0x632be59bd9b4e019U);
     std::size_t i = 0;

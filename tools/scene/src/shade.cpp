@@ -32,14 +32,12 @@ Shade shade(const RayCaster &caster, const World &world, const Eigen::Vector3f &
     if (!hit) {
         return sky_shade(direction, to_sun, pixel_rad);
     }
-    const float reflectance =
-        reflectance_at(world.surfaces[hit->surface], hit->body_point, hit->distance * pixel_rad);
+    const float reflectance = reflectance_at(world.surfaces[hit->surface], hit->body_point, hit->distance * pixel_rad);
     const Eigen::Vector3f point = eye + hit->distance * direction;
     Shade result;
     result.sky = reflectance * (0.5F + 0.5F * hit->normal.z());
     const float facing_sun = world.has_sun ? hit->normal.dot(to_sun) : 0;
-    if (facing_sun > 0 &&
-        !caster.is_blocked(point, to_sun, std::numeric_limits<float>::infinity(), moment)) {
+    if (facing_sun > 0 && !caster.is_blocked(point, to_sun, std::numeric_limits<float>::infinity(), moment)) {
         result.sun = reflectance * facing_sun;
     }
     if (!world.lamp_position) {

@@ -35,7 +35,8 @@ void add_basin(World &world)
     Mesh pipe = turned(make_cylinder(0.07F, 0.07F, 2.4F, 16, steel), 90, Eigen::Vector3f::UnitX());
     world.add(fittings, shifted(pipe, 0.7F, 2.2F, kDepth + 0.25F));
     for (int i = 0; i < 5; ++i) { /* a ladder */
-        world.add(fittings, make_centred_box({-x + 0.05F, -0.4F, 0.2F + 0.3F * static_cast<float>(i)}, {0.06F, 0.4F, 0.03F}, steel));
+        world.add(fittings, make_centred_box({-x + 0.05F, -0.4F, 0.2F + 0.3F * static_cast<float>(i)},
+                                             {0.06F, 0.4F, 0.03F}, steel));
     }
     world.add(fittings, make_centred_box({-x + 0.03F, -0.62F, kDepth / 2}, {0.05F, 0.04F, kDepth + 0.3F}, steel));
     world.add(fittings, make_centred_box({-x + 0.03F, -0.18F, kDepth / 2}, {0.05F, 0.04F, kDepth + 0.3F}, steel));
@@ -53,14 +54,15 @@ void add_hall(World &world, const SceneOptions &options)
     Chance chance(options.seed * 31 + 7);
     const ObjectId clutter = world.add_object("clutter");
     for (int i = 0; i < static_cast<int>(14 * options.clutter); ++i) {
-        const SurfaceId surface = world.add_surface({i % 2 == 0 ? Pattern::planks : Pattern::patches, chance.between(0.15F, 0.75F),
-                                                     chance.between(0.05F, 0.3F), chance.between(0.1F, 0.3F), 0.4F,
-                                                     static_cast<std::uint32_t>(100 + i)});
+        const SurfaceId surface = world.add_surface(
+            {i % 2 == 0 ? Pattern::planks : Pattern::patches, chance.between(0.15F, 0.75F), chance.between(0.05F, 0.3F),
+             chance.between(0.1F, 0.3F), 0.4F, static_cast<std::uint32_t>(100 + i)});
         const float angle = chance.between(0, 6.28F), away = chance.between(2.6F, 4.4F);
         const Eigen::Vector3f size(chance.between(0.2F, 0.7F), chance.between(0.2F, 0.7F), chance.between(0.2F, 1.1F));
         Mesh thing = i % 3 == 0 ? make_cylinder(size.x() / 2, size.x() / 2, size.z(), 18, surface)
                                 : shifted(make_centred_box({0, 0, 0}, size, surface), 0, 0, size.z() / 2);
-        world.add(clutter, shifted(turned(std::move(thing), chance.between(0, 90)), away * std::cos(angle), away * std::sin(angle), 0));
+        world.add(clutter, shifted(turned(std::move(thing), chance.between(0, 90)), away * std::cos(angle),
+                                   away * std::sin(angle), 0));
     }
 }
 

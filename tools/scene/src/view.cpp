@@ -48,8 +48,7 @@ View::View(const Geometry &geometry, const Camera &camera)
             for (const auto &offset : kOffsets) {
                 const double u = x + offset[0], v = y + offset[1];
                 directions_.push_back(direction_of(u, v));
-                margin_ = std::max(margin_,
-                                   (undistorted(camera, u, v).cast<float>() - centre).cwiseAbs().maxCoeff());
+                margin_ = std::max(margin_, (undistorted(camera, u, v).cast<float>() - centre).cwiseAbs().maxCoeff());
             }
         }
     }
@@ -69,8 +68,8 @@ void View::trace_pixel(const RayCaster &caster, std::size_t pixel)
     const float pixel_rad = kSampleFootprint / static_cast<float>(camera_.focal_px);
     Shade sum;
     for (std::size_t i = 0; i < kSamples; ++i) {
-        const Shade sample = shade(caster, geometry_.world(), eye_, directions_[pixel * kSamples + i], to_sun_,
-                                   pixel_rad, moment);
+        const Shade sample =
+            shade(caster, geometry_.world(), eye_, directions_[pixel * kSamples + i], to_sun_, pixel_rad, moment);
         sum.sky += sample.sky;
         sum.sun += sample.sun;
         sum.lamp += sample.lamp;

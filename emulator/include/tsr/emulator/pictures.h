@@ -19,7 +19,7 @@ namespace tsr
 {
 
 struct PairTruth {
-    FloatImage disparity_px; /* of the left view; kFloatInvalid: unknown */
+    FloatImage disparity_px;    /* of the left view; kFloatInvalid: unknown */
     std::filesystem::path name; /* for errors */
 };
 

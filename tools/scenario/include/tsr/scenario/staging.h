@@ -36,7 +36,8 @@ struct Staging {
     Site site;                                 /* without folders of frames */
 };
 
-/* Throws InputError for a geometry that cannot be: a camera inside a thing, a pair whose views share nothing, a lens that folds. */
+/* Throws InputError for a geometry that cannot be: a camera inside a thing, a pair whose views share nothing, a lens
+ * that folds. */
 Staging stage_scenario(const Scenario &scenario);
 
 } // namespace tsr

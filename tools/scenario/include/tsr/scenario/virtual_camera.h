@@ -19,8 +19,8 @@ class VirtualCamera
     /* camera and staging are kept. */
     VirtualCamera(const Scenario &scenario, const Staging &staging, const StagedCamera &camera);
 
-    /* Two sensors on one board expose alike: for captures of one instant this one takes the other's exposure and gain. The
-     * other is kept. */
+    /* Two sensors on one board expose alike: for captures of one instant this one takes the other's exposure and gain.
+     * The other is kept. */
     void follow(const VirtualCamera &other) { master_ = &other; }
 
     /* The exposure begins at time_us, or the jitter off it; image has the camera's size. */

@@ -26,7 +26,7 @@ struct Camera {
     int height = 120;
     double focal_px = 160;
     Eigen::Vector2d principal_px{79.5, 59.5};
-    std::array<double, 4> distortion{};               /* k1, k2, p1, p2 */
+    std::array<double, 4> distortion{};                    /* k1, k2, p1, p2 */
     Eigen::Isometry3d pose{Eigen::Isometry3d::Identity()}; /* camera axes to site axes */
     std::uint32_t readout_us = 0; /* from the first row's exposure to the last row's; 0: all rows at once */
 };

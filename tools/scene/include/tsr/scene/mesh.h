@@ -44,10 +44,11 @@ Mesh make_cylinder(float radius, float top_radius, float height, int sides, Surf
 Mesh make_ellipsoid(const Eigen::Vector3f &radii, int sides, SurfaceId surface);
 /* A cylinder with half spheres as ends: a limb from the origin to (0, 0, -length). */
 Mesh make_limb(float radius, float end_radius, float length, int sides, SurfaceId surface);
-/* A polygon in the x-z plane, counter-clockwise seen from -y, convex from its first corner, extruded from y = 0 to depth. */
+/* A polygon in the x-z plane, counter-clockwise seen from -y, convex from its first corner, extruded from y = 0 to
+ * depth. */
 Mesh make_prism(const std::vector<Eigen::Vector2f> &outline, float depth, SurfaceId surface);
-/* An upright wall in the x-z plane, y = 0 .. thickness, of length and height, with one hole each for the windows {x, z, width, height}, which do
- * not overlap in x. */
+/* An upright wall in the x-z plane, y = 0 .. thickness, of length and height, with one hole each for the windows {x, z,
+ * width, height}, which do not overlap in x. */
 Mesh make_wall(float length, float height, float thickness, const std::vector<Eigen::Vector4f> &windows,
                SurfaceId surface);
 

@@ -22,7 +22,7 @@ enum class Posture {
 
 struct PersonKey {
     double time_s = 0;
-    float x = 0, y = 0;      /* of the hip, m; the ground is z = ground_m */
+    float x = 0, y = 0; /* of the hip, m; the ground is z = ground_m */
     float heading_deg = 0;
     Posture posture = Posture::standing; /* changes evenly from key to key */
 };

@@ -20,7 +20,7 @@ namespace tsr::scene
 {
 
 struct Hit {
-    float distance = 0; /* along the unit direction, m */
+    float distance = 0;              /* along the unit direction, m */
     Eigen::Vector3f normal{0, 0, 1}; /* unit, of the side the ray met */
     bool back = false;               /* met from inside */
     ObjectId object = 0;

@@ -22,23 +22,23 @@ namespace tsr::scene
 {
 
 struct SceneOptions {
-    std::string kind;           /* one of scene_kinds() */
-    std::uint64_t seed = 1;     /* of clutter, clothes, who comes when */
-    double duration_s = 120;    /* events are spread over it; 10 .. 86,400 */
-    double clutter = 1;         /* how many small things stand about, 0 .. 3 */
-    double light_drift = 0.2;   /* the light grows and fades by this part, 0 .. 0.9 */
-    double light_period_s = 90; /* so long from bright to bright, 1 .. 86,400 */
-    int people = 2;             /* who come by, 0 .. 20: house, car, bedroom, street */
-    int cars = 2;               /* that pass, 0 .. 20: street */
-    double sun_hours = 0;       /* of the sun's way while the scene lasts, 0 .. 6: house, car, street */
-    double level_step_m = 0.2;  /* by which the level rises and falls, 0.01 .. 0.8: tank */
+    std::string kind;             /* one of scene_kinds() */
+    std::uint64_t seed = 1;       /* of clutter, clothes, who comes when */
+    double duration_s = 120;      /* events are spread over it; 10 .. 86,400 */
+    double clutter = 1;           /* how many small things stand about, 0 .. 3 */
+    double light_drift = 0.2;     /* the light grows and fades by this part, 0 .. 0.9 */
+    double light_period_s = 90;   /* so long from bright to bright, 1 .. 86,400 */
+    int people = 2;               /* who come by, 0 .. 20: house, car, bedroom, street */
+    int cars = 2;                 /* that pass, 0 .. 20: street */
+    double sun_hours = 0;         /* of the sun's way while the scene lasts, 0 .. 6: house, car, street */
+    double level_step_m = 0.2;    /* by which the level rises and falls, 0.01 .. 0.8: tank */
     double level_rate_m_s = 0.01; /* how fast, 0.0001 .. 1: tank */
 };
 
 /* Where pairs stand. */
 struct LayoutOptions {
-    int count = 7;         /* 1 .. 2,000 */
-    double distance_m = 0; /* to what they watch; 0: the scene's own */
+    int count = 7;                              /* 1 .. 2,000 */
+    double distance_m = 0;                      /* to what they watch; 0: the scene's own */
     double height_low_m = 0, height_high_m = 0; /* of the cameras; 0: the scene's own */
 };
 

@@ -34,8 +34,8 @@ struct SensorModel {
     float read_noise_e = 15;    /* electrons, RMS */
     float vignetting = 0.25F;   /* light lost in the corners, 0 .. 1 */
     bool exposure_control = true;
-    float wanted_mean = 110;    /* gray levels */
-    float dead_band = 12;       /* gray levels to either side */
+    float wanted_mean = 110; /* gray levels */
+    float dead_band = 12;    /* gray levels to either side */
     float gain_max = 8;
     std::uint64_t seed = 1;
 };

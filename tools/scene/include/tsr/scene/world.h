@@ -49,10 +49,10 @@ struct World {
     std::vector<Surface> surfaces;
     std::vector<Body> bodies;
     std::function<Light(std::uint64_t time_us)> light = [](std::uint64_t) { return Light{}; };
-    bool has_sun = true;                    /* if not, light.sun counts for nothing */
-    std::uint64_t sun_step_us = 60'000'000; /* shadows of the sun move this often */
+    bool has_sun = true;                          /* if not, light.sun counts for nothing */
+    std::uint64_t sun_step_us = 60'000'000;       /* shadows of the sun move this often */
     std::optional<Eigen::Vector3f> lamp_position; /* without one light.lamp counts for nothing */
-    std::vector<Event> events; /* in order of time */
+    std::vector<Event> events;                    /* in order of time */
 
     ObjectId add_object(std::string name);
     SurfaceId add_surface(const Surface &surface);
