@@ -20,7 +20,8 @@ using Maker = Scene (*)(const SceneOptions &, const LayoutOptions &);
 
 const std::map<std::string, Maker> &makers()
 {
-    static const std::map<std::string, Maker> all = {{"tank", make_tank}};
+    static const std::map<std::string, Maker> all = {
+        {"car", make_car}, {"house", make_house}, {"street", make_street}, {"tank", make_tank}};
     return all;
 }
 

@@ -28,7 +28,8 @@ void add_leaf(Mesh &mesh, const Eigen::Vector3f &at, float size, SurfaceId leave
     mesh.add_quad(at - u - v, at + u - v, at + u + v, at - u + v, leaves);
 }
 
-void add_crown(Mesh &mesh, const Eigen::Vector3f &centre, float radius, int leaf_count, SurfaceId leaves, Chance &chance)
+void add_crown(Mesh &mesh, const Eigen::Vector3f &centre, float radius, int leaf_count, SurfaceId leaves,
+               Chance &chance)
 {
     for (int i = 0; i < leaf_count; ++i) {
         Eigen::Vector3f away;
@@ -82,7 +83,8 @@ std::function<Light(std::uint64_t)> make_daylight(const SceneOptions &options, f
         light.sky = sky * drift;
         light.sun = sun * drift;
         light.to_sun = {static_cast<float>(std::cos(azimuth) * std::cos(elevation)),
-                        static_cast<float>(std::sin(azimuth) * std::cos(elevation)), static_cast<float>(std::sin(elevation))};
+                        static_cast<float>(std::sin(azimuth) * std::cos(elevation)),
+                        static_cast<float>(std::sin(elevation))};
         light.to_sun = light.to_sun.unaryExpr([](float v) { return std::nearbyint(v * 65536.0F) / 65536.0F; });
         return light;
     };
@@ -108,13 +110,12 @@ std::vector<Placement> make_ring(const LayoutOptions &layout, const Eigen::Vecto
     return ring;
 }
 
-Mesh make_ground(float size_m, int steps, float height_m, SurfaceId surface, std::uint32_t seed)
+Mesh make_terrain(float size_m, int steps, const std::function<float(float x, float y)> &height, SurfaceId surface)
 {
     const float step = size_m / static_cast<float>(steps);
     const auto at = [&](int i, int j) {
-        Eigen::Vector3f point(static_cast<float>(i) * step - size_m / 2, static_cast<float>(j) * step - size_m / 2, 0);
-        point.z() = height_m * noise_at(point * 0.2F, 0, 2, seed);
-        return point;
+        const float x = static_cast<float>(i) * step - size_m / 2, y = static_cast<float>(j) * step - size_m / 2;
+        return Eigen::Vector3f(x, y, height(x, y));
     };
     Mesh mesh;
     for (int i = 0; i < steps; ++i) {
@@ -123,6 +124,14 @@ Mesh make_ground(float size_m, int steps, float height_m, SurfaceId surface, std
         }
     }
     return mesh;
+}
+
+Mesh make_ground(float size_m, int steps, float height_m, SurfaceId surface, std::uint32_t seed)
+{
+    const auto rolls = [=](float x, float y) {
+        return height_m * noise_at(Eigen::Vector3f(x, y, 0) * 0.2F, 0, 2, seed);
+    };
+    return make_terrain(size_m, steps, rolls, surface);
 }
 
 Mesh make_tree(float height_m, SurfaceId bark, SurfaceId leaves, Chance &chance)

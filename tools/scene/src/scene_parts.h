@@ -7,6 +7,7 @@
 #define TSR_SCENE_SCENE_PARTS_H
 
 #include <cstdint>
+#include <functional>
 
 #include "tsr/scene/scene.h"
 
@@ -34,8 +35,8 @@ class Chance
 /* Light that grows and fades: a triangle of the period, smoothed, between 1 - drift and 1 + drift. */
 float drift_at(const SceneOptions &options, std::uint64_t time_us);
 
-/* Daylight of the given irradiances with the drift of options; the sun begins at azimuth and elevation (degrees) and goes west
- * by 15 degrees an hour. */
+/* Daylight of the given irradiances with the drift of options; the sun begins at azimuth and elevation (degrees) and
+ * goes west by 15 degrees an hour. */
 std::function<Light(std::uint64_t)> make_daylight(const SceneOptions &options, float sky, float sun, float azimuth_deg,
                                                   float elevation_deg);
 
@@ -43,7 +44,9 @@ std::function<Light(std::uint64_t)> make_daylight(const SceneOptions &options, f
 std::vector<Placement> make_ring(const LayoutOptions &layout, const Eigen::Vector3d &centre, double distance_m,
                                  double height_low_m, double height_high_m, double angle_deg, double span_deg);
 
-/* Uneven ground, a square of the size around the origin, in steps; rolls by up to height_m. */
+/* Uneven ground, a square of the size around the origin, in steps; rolls by up to height_m, or is as high as it is
+ * told. */
+Mesh make_terrain(float size_m, int steps, const std::function<float(float x, float y)> &height, SurfaceId surface);
 Mesh make_ground(float size_m, int steps, float height_m, SurfaceId surface, std::uint32_t seed);
 /* A trunk and leaves, about height_m high, from the origin. */
 Mesh make_tree(float height_m, SurfaceId bark, SurfaceId leaves, Chance &chance);

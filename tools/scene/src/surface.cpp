@@ -29,9 +29,9 @@ std::uint32_t mix(std::uint32_t value)
 /* -1 .. 1 of a lattice point. */
 float lattice(std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_t seed)
 {
-    const std::uint32_t hashed = mix(static_cast<std::uint32_t>(x) * 0x9e3779b1U ^
-                                     static_cast<std::uint32_t>(y) * 0x85ebca77U ^
-                                     static_cast<std::uint32_t>(z) * 0xc2b2ae3dU ^ seed);
+    const std::uint32_t hashed =
+        mix(static_cast<std::uint32_t>(x) * 0x9e3779b1U ^ static_cast<std::uint32_t>(y) * 0x85ebca77U ^
+            static_cast<std::uint32_t>(z) * 0xc2b2ae3dU ^ seed);
     return static_cast<float>(hashed >> 8) * (2.0F / 16777216.0F) - 1.0F;
 }
 
@@ -96,14 +96,15 @@ Look look_of(const Surface &surface, const Eigen::Vector3f &cell, float footprin
     case Pattern::planks: {
         const float across = cell.y() + cell.z();
         const float gap = joint_cover(across, 0.05F, footprint);
-        const float board = surface.reflectance * blend(1, shade(across, 0, 0, surface.seed + 1), resolved(1, footprint));
+        const float board =
+            surface.reflectance * blend(1, shade(across, 0, 0, surface.seed + 1), resolved(1, footprint));
         return {blend(board, surface.second, gap), {0.4F, 6, 6}};
     }
     case Pattern::tiles: {
         const float gap = std::max({joint_cover(cell.x(), 0.05F, footprint), joint_cover(cell.y(), 0.05F, footprint),
                                     joint_cover(cell.z(), 0.05F, footprint)});
-        const float tile =
-            surface.reflectance * blend(1, shade(cell.x(), cell.y(), cell.z(), surface.seed + 1), resolved(1, footprint));
+        const float tile = surface.reflectance *
+                           blend(1, shade(cell.x(), cell.y(), cell.z(), surface.seed + 1), resolved(1, footprint));
         return {blend(tile, surface.second, gap), {3, 3, 3}};
     }
     case Pattern::stripes: {
@@ -115,10 +116,29 @@ Look look_of(const Surface &surface, const Eigen::Vector3f &cell, float footprin
         const float chosen = value_noise(cell, surface.seed + 2) * 4 * resolved(1, footprint);
         return {blend(surface.second, surface.reflectance, std::clamp(chosen + 0.5F, 0.0F, 1.0F)), {2, 2, 2}};
     }
-    case Pattern::plain:
-        break;
+    case Pattern::shingles: { /* courses of 0.8 of a tile's width, dark where the next one lies on them */
+        const float course = cell.z() * 1.25F;
+        const float shift = 0.5F * (std::floor(course) - 2 * std::floor(std::floor(course) / 2));
+        const float along = cell.x() + shift;
+        const float joint =
+            std::max(joint_cover(course, 0.24F, 1.25F * footprint), joint_cover(along, 0.06F, footprint));
+        const float tile =
+            surface.reflectance * blend(1, shade(along, 0, course, surface.seed + 1), resolved(0.8F, footprint));
+        return {blend(tile, surface.second, joint), {2, 2, 2}};
+    }
+    case Pattern::plain: break;
     }
     return {surface.reflectance, {1, 1, 1}};
+}
+
+Eigen::Vector3f along_grain(const Eigen::Vector3f &point, Grain grain)
+{
+    switch (grain) {
+    case Grain::y: return {point.y(), point.x(), point.z()};
+    case Grain::z: return {point.z(), point.x(), point.y()};
+    case Grain::x: break;
+    }
+    return point;
 }
 
 } // namespace
@@ -143,11 +163,12 @@ float noise_at(const Eigen::Vector3f &point, float footprint, int octaves, std::
 float reflectance_at(const Surface &surface, const Eigen::Vector3f &point, float footprint_m)
 {
     /* Solids like to end at round numbers; joints should not lie in their faces. */
-    const Eigen::Vector3f cell = point / surface.size_m + Eigen::Vector3f(0.37F, 0.29F, 0.43F);
+    const Eigen::Vector3f cell =
+        along_grain(point, surface.grain) / surface.size_m + Eigen::Vector3f(0.37F, 0.29F, 0.43F);
     const float footprint = footprint_m / surface.size_m;
     const Look look = look_of(surface, cell, footprint);
-    const float noise = noise_at(cell.cwiseProduct(look.noise_scale), footprint * look.noise_scale.maxCoeff(), kOctaves,
-                                 surface.seed);
+    const float noise =
+        noise_at(cell.cwiseProduct(look.noise_scale), footprint * look.noise_scale.maxCoeff(), kOctaves, surface.seed);
     return std::clamp(look.reflectance * (1 + surface.contrast * 1.6F * noise), 0.01F, 0.98F);
 }
 
