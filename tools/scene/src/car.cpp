@@ -104,8 +104,7 @@ void add_clutter(World &world, const SceneOptions &options, const Yard &yard)
             break;
         case 4: thing = make_wood_pile(1.4F, chance.between(0.5F, 1.1F), surfaces, chance); break;
         default: {
-            const Eigen::Vector3f size(chance.between(0.5F, 0.9F), chance.between(0.4F, 0.6F),
-                                       chance.between(0.3F, 0.7F));
+            const Eigen::Vector3f size = chance.within({0.5F, 0.4F, 0.3F}, {0.9F, 0.6F, 0.7F});
             thing = make_crate(size, surfaces);
             thing.append(shifted(turned(make_crate(size * 0.7F, surfaces), chance.between(0, 40)), 0, 0, size.z()));
         }
@@ -281,7 +280,7 @@ void add_people(World &world, const SceneOptions &options, const Yard &yard, con
     if (options.people > 0) {
         const Clothes clothes = make_clothes(world, static_cast<std::uint32_t>(options.seed * 8 + 300));
         add_visitor(world, "person 1", first, clothes);
-        add_visitor(world, "person 1 again", second, clothes);
+        add_visitor(world, "person 1", second, clothes);
         tell(world, time_within(first.in, low, high), "a person walks up");
         tell(world, time_within(second.in, low, high), "a person walks up");
     }

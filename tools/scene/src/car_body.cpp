@@ -138,8 +138,8 @@ std::vector<float> body_stations(bool coarse)
 {
     std::vector<float> all = {-2.15F, -2.1F, 0.95F, 2.0F, 2.15F};
     const float step = coarse ? 0.4F : 0.15F;
-    for (float x = -2.0F; x < 2.1F; x += step) {
-        all.push_back(x);
+    for (int i = 0; - 2.0F + step * static_cast<float>(i) < 2.1F; ++i) {
+        all.push_back(-2.0F + step * static_cast<float>(i));
     }
     for (const float gap : {-0.98F, -0.12F, 0.82F}) {
         all.insert(all.end(), {gap, gap + kGapM});

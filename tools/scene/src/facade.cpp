@@ -89,10 +89,11 @@ float add_shop(HouseMeshes &house, const Style &style, const StreetSurfaces &sur
     band.openings = door_left ? std::vector<Opening>{leaf, pane} : std::vector<Opening>{pane, leaf};
     add_band(house.front, band);
     /* Goods in the window: what is printed on the pane's inside would be flat. */
-    for (float x = first + 0.3F; x + 0.5F < last; x += chance.between(0.5F, 1.1F)) {
-        const float high = chance.between(0.3F, 1.3F);
-        house.front.trims.append(make_box({x, 0.12F, 0.5F}, {x + chance.between(0.2F, 0.4F), 0.24F, 0.5F + high},
-                                          one_of(surfaces.signs, chance)));
+    const int goods = static_cast<int>((last - first - 0.6F) / 0.75F);
+    for (int i = 0; i < goods; ++i) {
+        const Eigen::Vector3f low(first + 0.3F + 0.75F * static_cast<float>(i), 0.12F, 0.5F);
+        const Eigen::Vector3f size = chance.within({0.2F, 0.12F, 0.3F}, {0.6F, 0.12F, 1.3F});
+        house.front.trims.append(make_box(low, low + size, one_of(surfaces.signs, chance)));
     }
     house.sign = make_box({margin, -0.08F, 2.75F}, {w - margin, 0, 3.3F}, one_of(surfaces.signs, chance));
     if (chance.whole(0, 2) > 0) { /* an awning, in front of the sign's lower edge */

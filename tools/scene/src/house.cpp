@@ -60,7 +60,7 @@ float lawn_height(const Garden &garden, float x, float y)
 
 void add_ground(World &world, const Garden &garden, const PropSurfaces &props)
 {
-    const SurfaceId grass = world.add_surface({Pattern::patches, 0.31F, 0.17F, 0.2F, 0.6F, 120});
+    const SurfaceId grass = world.add_surface({Pattern::patches, 0.31F, 0.17F, 0.2F, 0.45F, 120});
     const SurfaceId asphalt = world.add_surface({Pattern::plain, 0.24F, 0, 0.4F, 0.45F, 121});
     const SurfaceId slabs = world.add_surface({Pattern::plain, 0.52F, 0, 0.3F, 0.4F, 122});
     const float size = 6 * garden.half;
@@ -115,11 +115,12 @@ void add_plants(World &world, const Garden &garden, const PropSurfaces &props, C
     for (const Eigen::Vector2f &at : bushes) {
         world.add(bush, shifted(make_bush(chance.between(0.4F, 0.6F), props.leaves, chance), at.x(), at.y(), 0));
     }
-    int index = 0;
-    for (float t = -h; t < h; t += 2.6F) { /* along the fences */
+    const int along = static_cast<int>(2 * h / 2.6F);
+    for (int i = 0; i <= along; ++i) { /* along the fences */
+        const float t = -h + 2.6F * static_cast<float>(i);
         world.add(bush, shifted(make_bush(chance.between(0.5F, 0.9F), props.leaves, chance), t + 0.8F, h - 0.7F, 0));
         world.add(bush, shifted(make_bush(chance.between(0.4F, 0.8F), props.leaves, chance),
-                                index++ % 2 == 0 ? -h + 0.6F : h - 0.6F, t + 1, 0));
+                                i % 2 == 0 ? -h + 0.6F : h - 0.6F, t + 1, 0));
     }
 }
 
@@ -244,7 +245,6 @@ void add_people(World &world, const SceneOptions &options, const Garden &garden)
                                                         static_cast<std::uint32_t>(i) * 5);
         add_person(world, "person " + std::to_string(i + 1), person_keys(walk), clothes,
                    {chance.between(1.6F, 1.88F), 0, false});
-        tell(world, walk.start_s, "a person comes along the lane");
         tell(world, time_within(walk, -corner, corner), "a person enters");
     }
 }

@@ -101,13 +101,16 @@ Mesh make_flower_pot(float height_m, const PropSurfaces &surfaces)
 Mesh make_wood_pile(float length_m, float height_m, const PropSurfaces &surfaces, Chance &chance)
 {
     Mesh mesh;
-    for (float z = 0.09F; z < height_m; z += 0.16F) {
-        for (float x = chance.between(0.08F, 0.16F); x < length_m; x += chance.between(0.17F, 0.21F)) {
-            const float radius = chance.between(0.065F, 0.095F), length = chance.between(0.4F, 0.5F);
-            mesh.append(shifted(make_disc(radius, length, 8, surfaces.bark), x, chance.between(-0.03F, 0.03F), z));
-            /* The cut is lighter than the bark. */
-            mesh.append(shifted(make_disc(radius * 0.85F, length + 0.01F, 8, surfaces.clay), x, 0, z));
-        }
+    const int rows = static_cast<int>(height_m / 0.16F), columns = static_cast<int>(length_m / 0.185F);
+    for (int log = 0; log < rows * columns; ++log) {
+        /* Across from its place, radius, half length. */
+        const Eigen::Vector3f drawn = chance.within({-0.02F, 0.07F, 0.2F}, {0.02F, 0.095F, 0.25F});
+        const int row = log / columns;
+        const float x = (row % 2 == 0 ? 0.07F : 0.12F) + 0.185F * static_cast<float>(log % columns);
+        const float z = 0.09F + 0.16F * static_cast<float>(row);
+        mesh.append(shifted(make_disc(drawn.y(), 2 * drawn.z(), 8, surfaces.bark), x, drawn.x(), z));
+        /* The cut is lighter than the bark. */
+        mesh.append(shifted(make_disc(0.85F * drawn.y(), 2 * drawn.z() + 0.01F, 8, surfaces.clay), x, drawn.x(), z));
     }
     for (const float x : {0.0F, length_m}) {
         mesh.append(make_centred_box({x, 0, height_m / 2}, {0.06F, 0.3F, height_m + 0.2F}, surfaces.wood));
@@ -184,7 +187,8 @@ Mesh make_fence(float length_m, float height_m, float step_m, SurfaceId wood)
     for (const float z : {0.25F * height_m, 0.75F * height_m}) {
         mesh.append(make_box({0, 0.025F, z}, {length_m, 0.07F, z + 0.08F}, wood));
     }
-    for (float x = 0; x <= length_m; x += 2.4F) {
+    for (int i = 0; 2.4F * static_cast<float>(i) <= length_m; ++i) {
+        const float x = 2.4F * static_cast<float>(i);
         mesh.append(make_box({x, 0.03F, -0.3F}, {x + 0.09F, 0.12F, height_m - 0.05F}, wood));
     }
     return mesh;

@@ -22,8 +22,8 @@ constexpr double kSunDegreesPerHour = 15;
 /* A leaf, or a twig with leaves: a quad that faces anywhere. */
 void add_leaf(Mesh &mesh, const Eigen::Vector3f &at, float size, SurfaceId leaves, Chance &chance)
 {
-    const Eigen::Vector3f along(chance.between(-1, 1), chance.between(-1, 1), chance.between(-1, 1));
-    const Eigen::Vector3f across(chance.between(-1, 1), chance.between(-1, 1), chance.between(-1, 1));
+    const Eigen::Vector3f along = chance.within({-1, -1, -1}, {1, 1, 1});
+    const Eigen::Vector3f across = chance.within({-1, -1, -1}, {1, 1, 1});
     const Eigen::Vector3f u = along.normalized() * size, v = along.cross(across).normalized() * size * 0.7F;
     mesh.add_quad(at - u - v, at + u - v, at + u + v, at - u + v, leaves);
 }
@@ -34,7 +34,7 @@ void add_crown(Mesh &mesh, const Eigen::Vector3f &centre, float radius, int leaf
     for (int i = 0; i < leaf_count; ++i) {
         Eigen::Vector3f away;
         do {
-            away = {chance.between(-1, 1), chance.between(-1, 1), chance.between(-1, 1)};
+            away = chance.within({-1, -1, -1}, {1, 1, 1});
         } while (away.squaredNorm() > 1);
         add_leaf(mesh, centre + radius * away, radius * chance.between(0.10F, 0.22F), leaves, chance);
     }
@@ -54,6 +54,15 @@ float Chance::between(float low, float high)
     state_ ^= state_ >> 27;
     const auto drawn = static_cast<std::uint32_t>(state_ * 0x2545f4914f6cdd1dU >> 40);
     return low + (high - low) * static_cast<float>(drawn) * (1.0F / 16777216.0F);
+}
+
+Eigen::Vector3f Chance::within(const Eigen::Vector3f &low, const Eigen::Vector3f &high)
+{
+    Eigen::Vector3f drawn;
+    for (int axis = 0; axis < 3; ++axis) {
+        drawn[axis] = between(low[axis], high[axis]);
+    }
+    return drawn;
 }
 
 int Chance::whole(int low, int high)
@@ -138,8 +147,7 @@ Mesh make_tree(float height_m, SurfaceId bark, SurfaceId leaves, Chance &chance)
 {
     Mesh mesh = make_cylinder(0.035F * height_m, 0.02F * height_m, 0.55F * height_m, 10, bark);
     for (int i = 0; i < 5; ++i) {
-        const Eigen::Vector3f centre(chance.between(-0.16F, 0.16F) * height_m, chance.between(-0.16F, 0.16F) * height_m,
-                                     chance.between(0.55F, 0.85F) * height_m);
+        const Eigen::Vector3f centre = height_m * chance.within({-0.16F, -0.16F, 0.55F}, {0.16F, 0.16F, 0.85F});
         add_crown(mesh, centre, chance.between(0.14F, 0.22F) * height_m, 140, leaves, chance);
     }
     return mesh;
@@ -149,8 +157,7 @@ Mesh make_bush(float radius_m, SurfaceId leaves, Chance &chance)
 {
     Mesh mesh;
     for (int i = 0; i < 3; ++i) {
-        const Eigen::Vector3f centre(chance.between(-0.4F, 0.4F) * radius_m, chance.between(-0.4F, 0.4F) * radius_m,
-                                     0.5F * radius_m);
+        const Eigen::Vector3f centre = radius_m * chance.within({-0.4F, -0.4F, 0.5F}, {0.4F, 0.4F, 0.5F});
         add_crown(mesh, centre, 0.6F * radius_m, 90, leaves, chance);
     }
     return mesh;

@@ -27,6 +27,8 @@ class Chance
     explicit Chance(std::uint64_t seed);
     float between(float low, float high);
     int whole(int low, int high); /* both ends included */
+    /* x, y and z one after the other: C++ leaves the order of arguments to the compiler. */
+    Eigen::Vector3f within(const Eigen::Vector3f &low, const Eigen::Vector3f &high);
 
   private:
     std::uint64_t state_;

@@ -46,13 +46,15 @@ void add_markings(World &world, const StreetPlan &plan)
     const SurfaceId iron = world.add_surface({Pattern::tiles, 0.2F, 0.08F, 0.06F, 0.3F, 606});
     const ObjectId marking = world.add_object("marking"), road = world.add_object("road");
     const float half = plan.half_length();
-    for (float x = -half + 1; x + 2 < half; x += 4) {
+    for (int i = 0; i < static_cast<int>(half / 2); ++i) {
+        const float x = -half + 1 + 4 * static_cast<float>(i);
         if (!plan.is_by_crossing(x + 1, 2.6F)) {
             world.add(marking, make_box({x, -0.06F, -0.1F}, {x + 2, 0.06F, 0.008F}, white));
         }
     }
     for (const float crossing : plan.crossings()) {
-        for (float y = -kKerbY + 0.3F; y < kKerbY - 0.4F; y += 1.0F) {
+        for (int i = 0; i < 9; ++i) {
+            const float y = -kKerbY + 0.35F + static_cast<float>(i);
             world.add(marking, make_box({crossing - 1.4F, y, -0.1F}, {crossing + 1.4F, y + 0.5F, 0.009F}, white));
         }
     }
@@ -89,9 +91,10 @@ void add_parked_cars(World &world, const SceneOptions &options, const StreetPlan
             if (!taken || plan.is_by_crossing(x, 5)) {
                 continue;
             }
-            Mesh car = turned(make_whole_car(look, true), (side < 0 ? 0.0F : 180.0F) + chance.between(-1.5F, 1.5F));
-            world.add(parked, shifted(std::move(car), x + chance.between(-0.15F, 0.15F),
-                                      side * (kParkedY + chance.between(-0.05F, 0.08F)), 0));
+            const Eigen::Vector3f off =
+                chance.within({-0.15F, -0.05F, -1.5F}, {0.15F, 0.05F, 1.5F}); /* m, m, degrees */
+            Mesh car = turned(make_whole_car(look, true), (side < 0 ? 0.0F : 180.0F) + off.z());
+            world.add(parked, shifted(std::move(car), x + off.x(), side * kParkedY + off.y(), 0));
         }
     }
 }

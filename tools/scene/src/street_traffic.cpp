@@ -177,7 +177,7 @@ void add_pedestrians(World &world, const SceneOptions &options, const StreetPlan
                                                         static_cast<std::uint32_t>(i) * 5);
         add_person(world, "person " + std::to_string(i + 1), person_keys(errand.walk), clothes,
                    {chance.between(1.58F, 1.9F), kPavementZ, false});
-        tell(world, time_within(errand.walk, {-1e4F, -kFrontY}, {1e4F, kFrontY}), "a person comes out");
+        tell(world, time_within(errand.walk, {-1e4F, -kFrontY}, {1e4F, kFrontY}), "a person enters");
     }
 }
 

@@ -82,7 +82,9 @@ double time_within(const Walk &walk, const Eigen::Vector2f &low, const Eigen::Ve
 {
     const Path path(path_keys(walk, 0), true);
     const double end_s = path.keys().back().time_s;
-    for (double time_s = std::max(walk.start_s, 0.0); time_s <= end_s; time_s += 0.1) {
+    const double start_s = std::max(walk.start_s, 0.0);
+    for (int i = 0; start_s + 0.1 * i <= end_s; ++i) {
+        const double time_s = start_s + 0.1 * i;
         const Eigen::Vector2f point = path.at(static_cast<std::uint64_t>(time_s * 1e6))->position.head<2>();
         if ((point.array() >= low.array()).all() && (point.array() <= high.array()).all()) {
             return time_s;
