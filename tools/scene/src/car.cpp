@@ -295,9 +295,9 @@ Scene make_car(const SceneOptions &options, const LayoutOptions &layout)
 {
     Scene scene;
     World &world = scene.world;
-    /* Nearer than the car is long there is no ring. */
+    /* Nearer than this whoever is at the boot would stand in the ring. */
     LayoutOptions ring = layout;
-    ring.distance_m = std::max(layout.distance_m > 0 ? layout.distance_m : kRingM, 3.3);
+    ring.distance_m = std::max(layout.distance_m > 0 ? layout.distance_m : kRingM, 3.6);
     const Yard yard{static_cast<float>(ring.distance_m), static_cast<float>(ring.distance_m) + 3.6F};
     const Times times = times_of(options);
     const Visit first = make_visit(yard, times.open_s - 0.8, times.put_s + 2.2);
