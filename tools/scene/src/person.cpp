@@ -127,7 +127,7 @@ ObjectId add_person(World &world, const std::string &name, const std::vector<Per
     std::vector<PathKey> path_keys;
     auto postures = std::make_shared<std::vector<Posture>>();
     for (const PersonKey &key : keys) {
-        path_keys.push_back({key.time_s, {key.x, key.y, options.ground_m}, key.heading_deg});
+        path_keys.push_back({key.time_s, {key.x, key.y, options.ground_m + key.rise_m}, key.heading_deg});
         postures->push_back(key.posture);
     }
     const auto path = std::make_shared<const Path>(std::move(path_keys), options.stays);

@@ -20,7 +20,11 @@ using Maker = Scene (*)(const SceneOptions &, const LayoutOptions &);
 
 const std::map<std::string, Maker> &makers()
 {
-    static const std::map<std::string, Maker> all = {{"bedroom", make_bedroom}, {"tank", make_tank}};
+    static const std::map<std::string, Maker> all = {{"bedroom", make_bedroom},
+                                                     {"car", make_car},
+                                                     {"house", make_house},
+                                                     {"street", make_street},
+                                                     {"tank", make_tank}};
     return all;
 }
 

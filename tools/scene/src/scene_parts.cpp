@@ -22,8 +22,8 @@ constexpr double kSunDegreesPerHour = 15;
 /* A leaf, or a twig with leaves: a quad that faces anywhere. */
 void add_leaf(Mesh &mesh, const Eigen::Vector3f &at, float size, SurfaceId leaves, Chance &chance)
 {
-    const Eigen::Vector3f along(chance.between(-1, 1), chance.between(-1, 1), chance.between(-1, 1));
-    const Eigen::Vector3f across(chance.between(-1, 1), chance.between(-1, 1), chance.between(-1, 1));
+    const Eigen::Vector3f along = chance.within({-1, -1, -1}, {1, 1, 1});
+    const Eigen::Vector3f across = chance.within({-1, -1, -1}, {1, 1, 1});
     const Eigen::Vector3f u = along.normalized() * size, v = along.cross(across).normalized() * size * 0.7F;
     mesh.add_quad(at - u - v, at + u - v, at + u + v, at - u + v, leaves);
 }
@@ -34,7 +34,7 @@ void add_crown(Mesh &mesh, const Eigen::Vector3f &centre, float radius, int leaf
     for (int i = 0; i < leaf_count; ++i) {
         Eigen::Vector3f away;
         do {
-            away = {chance.between(-1, 1), chance.between(-1, 1), chance.between(-1, 1)};
+            away = chance.within({-1, -1, -1}, {1, 1, 1});
         } while (away.squaredNorm() > 1);
         add_leaf(mesh, centre + radius * away, radius * chance.between(0.10F, 0.22F), leaves, chance);
     }
@@ -54,6 +54,15 @@ float Chance::between(float low, float high)
     state_ ^= state_ >> 27;
     const auto drawn = static_cast<std::uint32_t>(state_ * 0x2545f4914f6cdd1dU >> 40);
     return low + (high - low) * static_cast<float>(drawn) * (1.0F / 16777216.0F);
+}
+
+Eigen::Vector3f Chance::within(const Eigen::Vector3f &low, const Eigen::Vector3f &high)
+{
+    Eigen::Vector3f drawn;
+    for (int axis = 0; axis < 3; ++axis) {
+        drawn[axis] = between(low[axis], high[axis]);
+    }
+    return drawn;
 }
 
 int Chance::whole(int low, int high)
@@ -110,13 +119,12 @@ std::vector<Placement> make_ring(const LayoutOptions &layout, const Eigen::Vecto
     return ring;
 }
 
-Mesh make_ground(float size_m, int steps, float height_m, SurfaceId surface, std::uint32_t seed)
+Mesh make_terrain(float size_m, int steps, const std::function<float(float x, float y)> &height, SurfaceId surface)
 {
     const float step = size_m / static_cast<float>(steps);
     const auto at = [&](int i, int j) {
-        Eigen::Vector3f point(static_cast<float>(i) * step - size_m / 2, static_cast<float>(j) * step - size_m / 2, 0);
-        point.z() = height_m * noise_at(point * 0.2F, 0, 2, seed);
-        return point;
+        const float x = static_cast<float>(i) * step - size_m / 2, y = static_cast<float>(j) * step - size_m / 2;
+        return Eigen::Vector3f(x, y, height(x, y));
     };
     Mesh mesh;
     for (int i = 0; i < steps; ++i) {
@@ -127,12 +135,19 @@ Mesh make_ground(float size_m, int steps, float height_m, SurfaceId surface, std
     return mesh;
 }
 
+Mesh make_ground(float size_m, int steps, float height_m, SurfaceId surface, std::uint32_t seed)
+{
+    const auto rolls = [=](float x, float y) {
+        return height_m * noise_at(Eigen::Vector3f(x, y, 0) * 0.2F, 0, 2, seed);
+    };
+    return make_terrain(size_m, steps, rolls, surface);
+}
+
 Mesh make_tree(float height_m, SurfaceId bark, SurfaceId leaves, Chance &chance)
 {
     Mesh mesh = make_cylinder(0.035F * height_m, 0.02F * height_m, 0.55F * height_m, 10, bark);
     for (int i = 0; i < 5; ++i) {
-        const Eigen::Vector3f centre(chance.between(-0.16F, 0.16F) * height_m, chance.between(-0.16F, 0.16F) * height_m,
-                                     chance.between(0.55F, 0.85F) * height_m);
+        const Eigen::Vector3f centre = height_m * chance.within({-0.16F, -0.16F, 0.55F}, {0.16F, 0.16F, 0.85F});
         add_crown(mesh, centre, chance.between(0.14F, 0.22F) * height_m, 140, leaves, chance);
     }
     return mesh;
@@ -142,8 +157,7 @@ Mesh make_bush(float radius_m, SurfaceId leaves, Chance &chance)
 {
     Mesh mesh;
     for (int i = 0; i < 3; ++i) {
-        const Eigen::Vector3f centre(chance.between(-0.4F, 0.4F) * radius_m, chance.between(-0.4F, 0.4F) * radius_m,
-                                     0.5F * radius_m);
+        const Eigen::Vector3f centre = radius_m * chance.within({-0.4F, -0.4F, 0.5F}, {0.4F, 0.4F, 0.5F});
         add_crown(mesh, centre, 0.6F * radius_m, 90, leaves, chance);
     }
     return mesh;

@@ -7,6 +7,7 @@
 #define TSR_SCENE_SCENE_PARTS_H
 
 #include <cstdint>
+#include <functional>
 
 #include "tsr/scene/scene.h"
 
@@ -26,6 +27,8 @@ class Chance
     explicit Chance(std::uint64_t seed);
     float between(float low, float high);
     int whole(int low, int high); /* both ends included */
+    /* x, y and z one after the other: C++ leaves the order of arguments to the compiler. */
+    Eigen::Vector3f within(const Eigen::Vector3f &low, const Eigen::Vector3f &high);
 
   private:
     std::uint64_t state_;
@@ -43,7 +46,9 @@ std::function<Light(std::uint64_t)> make_daylight(const SceneOptions &options, f
 std::vector<Placement> make_ring(const LayoutOptions &layout, const Eigen::Vector3d &centre, double distance_m,
                                  double height_low_m, double height_high_m, double angle_deg, double span_deg);
 
-/* Uneven ground, a square of the size around the origin, in steps; rolls by up to height_m. */
+/* Uneven ground, a square of the size around the origin, in steps; rolls by up to height_m, or is as high as it is
+ * told. */
+Mesh make_terrain(float size_m, int steps, const std::function<float(float x, float y)> &height, SurfaceId surface);
 Mesh make_ground(float size_m, int steps, float height_m, SurfaceId surface, std::uint32_t seed);
 /* A trunk and leaves, about height_m high, from the origin. */
 Mesh make_tree(float height_m, SurfaceId bark, SurfaceId leaves, Chance &chance);

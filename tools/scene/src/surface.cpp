@@ -116,9 +116,29 @@ Look look_of(const Surface &surface, const Eigen::Vector3f &cell, float footprin
         const float chosen = value_noise(cell, surface.seed + 2) * 4 * resolved(1, footprint);
         return {blend(surface.second, surface.reflectance, std::clamp(chosen + 0.5F, 0.0F, 1.0F)), {2, 2, 2}};
     }
+    case Pattern::shingles: { /* courses of 0.8 of a tile's width, dark where the next one lies on them */
+        const float course = cell.z() * 1.25F;
+        const float shift = 0.5F * (std::floor(course) - 2 * std::floor(std::floor(course) / 2));
+        const float along = cell.x() + shift;
+        const float joint =
+            std::max(joint_cover(course, 0.24F, 1.25F * footprint), joint_cover(along, 0.06F, footprint));
+        const float tile =
+            surface.reflectance * blend(1, shade(along, 0, course, surface.seed + 1), resolved(0.8F, footprint));
+        return {blend(tile, surface.second, joint), {2, 2, 2}};
+    }
     case Pattern::plain: break;
     }
     return {surface.reflectance, {1, 1, 1}};
+}
+
+Eigen::Vector3f along_grain(const Eigen::Vector3f &point, Grain grain)
+{
+    switch (grain) {
+    case Grain::y: return {point.y(), point.x(), point.z()};
+    case Grain::z: return {point.z(), point.x(), point.y()};
+    case Grain::x: break;
+    }
+    return point;
 }
 
 } // namespace
@@ -143,7 +163,8 @@ float noise_at(const Eigen::Vector3f &point, float footprint, int octaves, std::
 float reflectance_at(const Surface &surface, const Eigen::Vector3f &point, float footprint_m)
 {
     /* Solids like to end at round numbers; joints should not lie in their faces. */
-    const Eigen::Vector3f cell = point / surface.size_m + Eigen::Vector3f(0.37F, 0.29F, 0.43F);
+    const Eigen::Vector3f cell =
+        along_grain(point, surface.grain) / surface.size_m + Eigen::Vector3f(0.37F, 0.29F, 0.43F);
     const float footprint = footprint_m / surface.size_m;
     const Look look = look_of(surface, cell, footprint);
     const float noise =

@@ -25,6 +25,7 @@ struct PersonKey {
     float x = 0, y = 0; /* of the hip, m; the ground is z = ground_m */
     float heading_deg = 0;
     Posture posture = Posture::standing; /* changes evenly from key to key */
+    float rise_m = 0;                    /* of the ground here, above PersonOptions::ground_m: a kerb, a step */
 };
 
 struct Clothes {

@@ -28,7 +28,15 @@ enum class Pattern {
     planks,  /* boards along x, grain along them */
     tiles,   /* squares, each of its own shade, with grout */
     stripes, /* cloth: bands along x */
-    patches  /* leaves, gravel, print: cells of two reflectances */
+    patches, /* leaves, gravel, print: cells of two reflectances */
+    shingles /* a roof's courses, from z, each tile of its own shade; the ridge is along x */
+};
+
+/* The body's axis that a pattern takes for its x. */
+enum class Grain {
+    x,
+    y, /* x and y change places */
+    z  /* boards stand upright */
 };
 
 struct Surface {
@@ -38,6 +46,7 @@ struct Surface {
     float size_m = 0.2F;      /* of the pattern's cell, or the noise's longest wave */
     float contrast = 0.2F;    /* of the noise, relative: 0 .. 1 */
     std::uint32_t seed = 0;
+    Grain grain = Grain::x;
 };
 
 /* Reflectance, 0 .. 1, at a point (m) whose pixel is footprint_m wide. */
