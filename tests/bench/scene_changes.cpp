@@ -105,7 +105,8 @@ void watch(const tsr::Scenario &scenario, const tsr::Staging &staging, const tsr
     tsr::scene::RayCaster caster(*staging.geometry);
     tsr::VirtualCamera camera(scenario, staging, staged);
     tsr::scene::View still(*staging.geometry, staged.camera); /* without jitter, to see what moved */
-    const auto width = static_cast<std::uint16_t>(staged.camera.width), height = static_cast<std::uint16_t>(staged.camera.height);
+    const auto width = static_cast<std::uint16_t>(staged.camera.width),
+               height = static_cast<std::uint16_t>(staged.camera.height);
     std::vector<std::uint8_t> pixels(static_cast<std::size_t>(width) * height);
     tsr_change_config config{};
     config.width = width;
@@ -131,7 +132,8 @@ void watch(const tsr::Scenario &scenario, const tsr::Staging &staging, const tsr
         const tsr::scene::Layers &layers = still.render(caster, time_us);
         const bool sun_moved = time_us / staging.scene->world.sun_step_us != sun_moment;
         sun_moment = time_us / staging.scene->world.sun_step_us;
-        const bool moved = i > 0 && !sun_moved && (layers.sky != before.sky || layers.sun != before.sun || layers.lamp != before.lamp);
+        const bool moved =
+            i > 0 && !sun_moved && (layers.sky != before.sky || layers.sun != before.sun || layers.lamp != before.lamp);
         before = layers;
         if (i >= kSettleFrames) {
             judge.frame(static_cast<double>(time_us) / 1e6, moved, still.truth(caster, time_us), result.changed, tally);
@@ -153,8 +155,9 @@ int run(int argc, char **argv)
             watch(scenario, staging, staged, tally);
         }
     }
-    const nlohmann::ordered_json json{{"scenario", scenario.name}, {"cameras", staging.site.pairs.size()}, {"frames", tally.frames},
-                                      {"wakes", tally.wakes},      {"events", tally.events},               {"caught", tally.caught},
+    const nlohmann::ordered_json json{{"scenario", scenario.name}, {"cameras", staging.site.pairs.size()},
+                                      {"frames", tally.frames},    {"wakes", tally.wakes},
+                                      {"events", tally.events},    {"caught", tally.caught},
                                       {"quiet", tally.quiet},      {"quiet_wakes", tally.quiet_wakes}};
     std::printf("%s\n", json.dump().c_str());
     return 0;

@@ -23,9 +23,11 @@ RULES = {
     "hal/air": {"hal", "base"},
     "hal/mps2": {"hal", "base"},
     "tools/host": {"host", "base", "vision", "codec", "wire"},
-    "tools/tarsier": {"stage", "stereo", "coding", "host", "base", "codec", "wire", "vision"},
+    "tools/scene": {"scene", "base", "host"},
+    "tools/scenario": {"scenario", "scene", "host", "base"},
+    "tools/tarsier": {"stage", "stereo", "coding", "scenario", "scene", "host", "base", "codec", "wire", "vision"},
     "tools/train": {"codec", "base", "vision"},
-    "emulator": {"emulator", "node", "hal", "host", "base", "wire"},
+    "emulator": {"emulator", "node", "hal", "scenario", "scene", "host", "base", "wire"},
     "sink": {"sink", "host", "base", "codec", "wire"},
 }
 # What freestanding C11 and a small libc give; the firmware needs no more.

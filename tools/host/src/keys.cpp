@@ -14,10 +14,10 @@
 #include <sys/random.h>
 #include <sys/stat.h>
 
-#include "tsr/host/toml_fields.h"
 #include "tsr/host/atomic_file.h"
 #include "tsr/host/input_error.h"
 #include "tsr/host/site.h"
+#include "tsr/host/toml_fields.h"
 
 namespace tsr
 {

@@ -42,13 +42,30 @@ const std::vector<std::string> &scene_kinds()
     return kinds;
 }
 
+namespace
+{
+
+/* Shadows step as far as the true sun's do in a minute, 0.25 degrees, however fast it goes; those of a sun that stands
+ * never do. */
+std::uint64_t sun_step_us(const SceneOptions &options)
+{
+    if (options.sun_hours <= 0) {
+        return UINT64_MAX;
+    }
+    return static_cast<std::uint64_t>(60e6 * options.duration_s / (3600 * options.sun_hours)) + 1;
+}
+
+} // namespace
+
 Scene make_scene(const SceneOptions &options, const LayoutOptions &layout)
 {
     const auto maker = makers().find(options.kind);
     if (maker == makers().end()) {
         throw std::invalid_argument("no scene '" + options.kind + "'");
     }
-    return maker->second(options, layout);
+    Scene scene = maker->second(options, layout);
+    scene.world.sun_step_us = sun_step_us(options);
+    return scene;
 }
 
 } // namespace tsr::scene
