@@ -7,12 +7,14 @@
  *
  * SPDX-License-Identifier: Apache-2.0
  */
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <unistd.h>
@@ -44,6 +46,7 @@ struct Options {
     std::optional<std::uint64_t> seed;
     fs::path out;
     fs::path sink; /* tarsier-sink; beside this program by default */
+    unsigned threads = std::max(1u, std::thread::hardware_concurrency());
     bool quiet = false;
 };
 
@@ -62,6 +65,8 @@ void declare(CLI::App &app, Options &options)
     app.add_option("--seed", options.seed, "instead of the site's")->check(CLI::Range(kSeedMax));
     app.add_option("--out", options.out, "folder for the results")->required();
     app.add_option("--sink", options.sink, "the tarsier-sink program, by default the one beside this");
+    app.add_option("--threads", options.threads, "that render a virtual scene, by default as many as the machine has")
+        ->check(CLI::Range(1, 256));
     app.add_flag("--quiet", options.quiet, "no progress bar");
 }
 
@@ -241,7 +246,7 @@ int run_scenario(const Options &options)
     const tsr::Staging staging = tsr::stage_scenario(scenario);
     const tsr::KeyRing keys = tsr::derive_test_keys(scenario.seed, staging.site);
     tsr::check_nodes(staging.site, keys);
-    tsr::ScenePictures pictures(scenario, staging);
+    tsr::ScenePictures pictures(scenario, staging, options.threads);
     return run_site(options, staging.site, keys, pictures);
 }
 

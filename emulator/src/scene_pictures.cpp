@@ -16,20 +16,26 @@ namespace
 class SceneSource : public FrameSource
 {
   public:
-    SceneSource(VirtualCamera &camera, scene::RayCaster &caster) : camera_(camera), caster_(caster) {}
+    SceneSource(VirtualCamera &camera, RenderPool &pool) : camera_(camera), pool_(pool) {}
 
     ImageSize size() const override { return {camera_.camera().width, camera_.camera().height}; }
-    void show(std::uint64_t time_us, const tsr_gray &image) override { camera_.capture(caster_, time_us, image); }
+    void prepare(std::uint64_t time_us) override { rendered_ = pool_.render(camera_, time_us); }
+    void show(std::uint64_t time_us, const tsr_gray &image) override
+    {
+        rendered_.get();
+        camera_.expose(time_us, image);
+    }
 
   private:
     VirtualCamera &camera_;
-    scene::RayCaster &caster_;
+    RenderPool &pool_;
+    std::future<void> rendered_;
 };
 
 } // namespace
 
-ScenePictures::ScenePictures(const Scenario &scenario, const Staging &staging)
-    : scenario_(scenario), caster_(*staging.geometry)
+ScenePictures::ScenePictures(const Scenario &scenario, const Staging &staging, unsigned threads)
+    : scenario_(scenario), caster_(*staging.geometry), pool_(*staging.geometry, threads)
 {
     for (const StagedCamera &staged : staging.cameras) {
         auto &camera = cameras_[{staged.node, staged.right}];
@@ -52,7 +58,7 @@ std::unique_ptr<FrameSource> ScenePictures::source(const SiteNode &node, bool ri
         return nullptr;
     }
     VirtualCamera *seen = camera(node.id, right || node.role == Role::wing);
-    return seen == nullptr ? nullptr : std::make_unique<SceneSource>(*seen, caster_);
+    return seen == nullptr ? nullptr : std::make_unique<SceneSource>(*seen, pool_);
 }
 
 std::uint64_t ScenePictures::end_us() const

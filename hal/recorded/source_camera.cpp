@@ -30,6 +30,7 @@ tsr_status SourceCamera::capture(void *self, tsr_gray image, std::uint64_t at_us
     camera.busy_ = true;
     camera.image_ = image;
     camera.exposure_us_ = std::max(at_us, camera.owner_.now_us());
+    camera.source_->prepare(camera.exposure_us_);
     camera.owner_.finish_at(camera.exposure_us_ + kExposureUs + kReadoutUs);
     return TSR_OK;
 }

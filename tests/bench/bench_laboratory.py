@@ -17,7 +17,8 @@ SCENES = ("house", "car", "bedroom", "street", "tank")
 SEEDS = (1, 2, 3)
 CAUGHT_MIN, FALSE_MAX = 0.99, 0.005
 # 100 nodes, one frame a second each, in the scene that has room for them.
-CROWD = {"scenario": "street", "settings": ("pairs.count=100", "pairs.watch_period_ms=1000", "duration_s=60"), "speed_min": 5}
+CROWD = {"scenario": "street", "speed_min": 5,
+         "settings": ("pairs.count=100", "pairs.watch_period_ms=1000", "duration_s=60", "scene.sun_hours=0.02")}
 
 
 def target(name, value, unit, goal=None, met=None, how=""):

@@ -53,6 +53,13 @@ with tempfile.TemporaryDirectory() as folder:
     for file in files:
         one, other = folder / "frames1" / file, folder / "frames3" / file
         check(one.is_dir() or one.read_bytes() == other.read_bytes(), f"{file} depends on the number of threads")
+    moving = folder / "moving.toml"
+    moving.write_text(SCENARIO.split("[camera]")[0].replace("duration_s = 12", "duration_s = 40"))
+    summaries = [emulate(moving, folder / f"threads{threads}", "--threads", str(threads)) for threads in (1, 4)]
+    for summary in summaries:
+        del summary["wall_time_s"]
+    check(summaries[0] == summaries[1] and stored_maps(folder / "threads1") == stored_maps(folder / "threads4"),
+          "the result depends on the number of threads")
     played = emulate(folder / "frames1/site.toml", folder / "played")
     check(stored_maps(folder / "live") == stored_maps(folder / "played"), "the recording gives other maps")
     check([pair["maps"][0]["error"] for pair in live["pairs"]] == [pair["maps"][0]["error"] for pair in played["pairs"]], "other errors")

@@ -49,16 +49,19 @@ std::uint64_t VirtualCamera::jittered(std::uint64_t time_us) const
     return time_us + late < jitter_us_ ? 0 : time_us + late - jitter_us_;
 }
 
-void VirtualCamera::capture(scene::RayCaster &caster, std::uint64_t time_us, const tsr_gray &image)
+void VirtualCamera::render(scene::RayCaster &caster, std::uint64_t time_us)
+{
+    layers_ = &view_.render(caster, jittered(time_us));
+}
+
+void VirtualCamera::expose(std::uint64_t time_us, const tsr_gray &image)
 {
     if (master_ != nullptr) {
         sensor_.follow(master_->last_us_ == time_us ? master_->last_sensor_ : master_->sensor_);
     }
     last_sensor_ = sensor_;
     last_us_ = time_us;
-    const std::uint64_t exposed_us = jittered(time_us);
-    const scene::Layers &layers = view_.render(caster, exposed_us);
-    sensor_.expose(view_.camera(), layers, staging_.scene->world.light_at(exposed_us), image);
+    sensor_.expose(view_.camera(), *layers_, staging_.scene->world.light_at(jittered(time_us)), image);
 }
 
 FloatImage true_disparity(const SitePair &pair, const scene::Truth &truth)

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "tsr/emulator/pictures.h"
+#include "tsr/emulator/render_pool.h"
 #include "tsr/scenario/virtual_camera.h"
 
 namespace tsr
@@ -18,8 +19,8 @@ namespace tsr
 class ScenePictures : public Pictures
 {
   public:
-    /* Both are kept. */
-    ScenePictures(const Scenario &scenario, const Staging &staging);
+    /* Scenario and staging are kept. threads >= 1 render; the result does not depend on their number. */
+    ScenePictures(const Scenario &scenario, const Staging &staging, unsigned threads);
 
     std::unique_ptr<FrameSource> source(const SiteNode &node, bool right) override;
     std::uint64_t end_us() const override;
@@ -30,8 +31,9 @@ class ScenePictures : public Pictures
     VirtualCamera *camera(std::uint16_t node, bool right);
 
     const Scenario &scenario_;
-    scene::RayCaster caster_;
+    scene::RayCaster caster_; /* of this thread, for truths */
     std::map<std::pair<std::uint16_t, bool>, std::unique_ptr<VirtualCamera>> cameras_;
+    RenderPool pool_; /* ends before the cameras do */
 };
 
 } // namespace tsr

@@ -23,8 +23,16 @@ class VirtualCamera
      * The other is kept. */
     void follow(const VirtualCamera &other) { master_ = &other; }
 
-    /* The exposure begins at time_us, or the jitter off it; image has the camera's size. */
-    void capture(scene::RayCaster &caster, std::uint64_t time_us, const tsr_gray &image);
+    /* A capture whose exposure begins at time_us, or the jitter off it, in two steps. The first, which takes long, may
+     * run on another thread than all else, but not beside anything of this camera. */
+    void render(scene::RayCaster &caster, std::uint64_t time_us);
+    /* image has the camera's size. */
+    void expose(std::uint64_t time_us, const tsr_gray &image);
+    void capture(scene::RayCaster &caster, std::uint64_t time_us, const tsr_gray &image)
+    {
+        render(caster, time_us);
+        expose(time_us, image);
+    }
 
     const scene::Camera &camera() const { return view_.camera(); }
     /* Of the pixels' centres, without jitter. */
@@ -36,6 +44,7 @@ class VirtualCamera
 
     const Staging &staging_;
     scene::View view_;
+    const scene::Layers *layers_ = nullptr; /* the last rendered */
     scene::Sensor sensor_;
     const VirtualCamera *master_ = nullptr;
     std::uint64_t last_us_ = UINT64_MAX; /* of the last capture */
