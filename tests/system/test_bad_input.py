@@ -110,6 +110,8 @@ def sites(folder, scene):
              ("unknown field", r'name = "aloe"', 'name = "aloe"\ncolour = "red"', "colour"),
              ("negative shadowing", r"\[radio\]", "[radio]\nshadowing_db = -3", "shadowing_db"),
              ("CCA below the noise", r"\[radio\]", "[radio]\ncca_threshold_dbm = -120", "cca_threshold_dbm"),
+             ("empty battery", r"\[radio\]", "[battery]\ncapacity_mah = 0\n[radio]", "battery.capacity_mah"),
+             ("a converter that gains", r"\[radio\]", "[battery]\nconverter_efficiency_percent = 101\n[radio]", "converter_efficiency_percent"),
              ("not TOML", r"\[site\]", "[site", "not_TOML.toml:1"),
              ("negative baseline", r"baseline_mm = 160", "baseline_mm = -160", "baseline_mm"),
              ("two gateways", r'role = "relay"', 'role = "gateway"', "gateway"),
