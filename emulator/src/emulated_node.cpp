@@ -193,9 +193,17 @@ const tsr_sender_counters &EmulatedNode::sender_counters() const
 
 EnergyMj EmulatedNode::energy() const
 {
-    const std::uint64_t captures = (left_ ? left_->captures() : 0) + (right_ ? right_->captures() : 0);
-    const std::uint64_t camera_us = captures * (SourceCamera::kExposureUs + SourceCamera::kReadoutUs);
-    return energy_of(around_.power, around_.air.times(radio_), cpu_busy_us_, around_.queue.now_us(), camera_us);
+    NodeTimes times;
+    times.total_us = around_.queue.now_us();
+    times.radio = around_.air.times(radio_);
+    times.cpu_busy_us = cpu_busy_us_;
+    for (const auto *camera : {left_.get(), right_.get()}) {
+        times.cameras += camera != nullptr ? 1 : 0;
+        times.captures += camera != nullptr ? camera->captures() : 0;
+    }
+    times.exposure_us = SourceCamera::kExposureUs;
+    times.readout_us = SourceCamera::kReadoutUs;
+    return energy_of(around_.power, times);
 }
 
 } // namespace tsr

@@ -26,19 +26,62 @@ std::uint64_t work_time_us(const PowerModel &model, tsr_work_kind kind, std::uin
     return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(cycles / model.cpu_mhz));
 }
 
-EnergyMj energy_of(const PowerModel &model, const AirTimes &radio, std::uint64_t cpu_busy_us, std::uint64_t total_us,
-                   std::uint64_t camera_us)
+namespace
 {
-    /* mA V us = nJ; 1e6 nJ = 1 mJ */
-    const auto millijoules = [&](double current_ma, std::uint64_t time_us) {
-        return current_ma * model.supply_v * static_cast<double>(time_us) / 1e6;
+
+/* What is left of total after used. */
+std::uint64_t rest_of(std::uint64_t total_us, std::uint64_t used_us)
+{
+    return total_us - std::min(total_us, used_us);
+}
+
+/* mW us = nJ; 1e6 nJ = 1 mJ */
+double millijoules(double power_mw, std::uint64_t time_us)
+{
+    return power_mw * static_cast<double>(time_us) / 1e6;
+}
+
+EnergyMj::Camera camera_energy(const PowerModel &model, const NodeTimes &times)
+{
+    const std::uint64_t capture_us = model.camera_start_us + times.exposure_us + times.readout_us;
+    EnergyMj::Camera camera;
+    camera.start = millijoules(model.camera_mw, times.captures * model.camera_start_us);
+    camera.expose = millijoules(model.camera_mw, times.captures * times.exposure_us);
+    camera.read = millijoules(model.camera_mw, times.captures * times.readout_us);
+    camera.standby =
+        millijoules(model.camera_standby_mw, rest_of(times.cameras * times.total_us, times.captures * capture_us));
+    return camera;
+}
+
+} // namespace
+
+double EnergyMj::total() const
+{
+    return radio.transmit + radio.assess + radio.acknowledge + radio.receive + radio.sleep + cpu.run + cpu.sleep +
+           camera.start + camera.expose + camera.read + camera.standby + storage.write + storage.read +
+           storage.standby + board;
+}
+
+EnergyMj energy_of(const PowerModel &model, const NodeTimes &times)
+{
+    const auto drawn = [&](double current_ma, std::uint64_t time_us) {
+        return millijoules(current_ma * model.supply_v, time_us);
     };
+    const AirTimes &radio = times.radio;
     EnergyMj energy;
-    energy.radio_tx = millijoules(model.radio_tx_ma, radio.transmitting);
-    energy.radio_rx = millijoules(model.radio_rx_ma, radio.receiving);
-    energy.cpu = millijoules(model.cpu_ua_per_mhz * model.cpu_mhz / 1000, cpu_busy_us);
-    energy.cpu_sleep = millijoules(model.cpu_sleep_ma, total_us - std::min(total_us, cpu_busy_us));
-    energy.camera = model.camera_mw * static_cast<double>(camera_us) / 1e6;
+    energy.radio.transmit = drawn(model.radio_tx_ma, radio.transmitting);
+    energy.radio.assess = drawn(model.radio_rx_ma, radio.assessing);
+    energy.radio.acknowledge = drawn(model.radio_tx_ma, radio.acknowledging) + drawn(model.radio_rx_ma, radio.awaiting);
+    energy.radio.receive = drawn(model.radio_rx_ma, radio.receiving);
+    energy.radio.sleep = drawn(model.radio_sleep_ma, radio.sleeping);
+    energy.cpu.run = drawn(model.cpu_ua_per_mhz * model.cpu_mhz / 1000, times.cpu_busy_us);
+    energy.cpu.sleep = drawn(model.cpu_sleep_ma, rest_of(times.total_us, times.cpu_busy_us));
+    energy.camera = camera_energy(model, times);
+    energy.storage.write = drawn(model.storage_write_ma, times.storage_writing_us);
+    energy.storage.read = drawn(model.storage_read_ma, times.storage_reading_us);
+    energy.storage.standby =
+        drawn(model.storage_standby_ma, rest_of(times.total_us, times.storage_writing_us + times.storage_reading_us));
+    energy.board = drawn(model.board_ma, times.total_us);
     return energy;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tsr/emulator/battery.h"
 #include "tsr/emulator/report.h"
 
 namespace tsr
@@ -16,7 +17,7 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kSummaryFormat = 1;
+constexpr int kSummaryFormat = 2;
 
 /* Shorter numbers, and the same text for the same run. */
 double rounded(double value, int digits)
@@ -27,9 +28,36 @@ double rounded(double value, int digits)
 
 Json energy_json(const EnergyMj &energy)
 {
-    return {{"radio_tx", rounded(energy.radio_tx, 3)}, {"radio_rx", rounded(energy.radio_rx, 3)},
-            {"cpu", rounded(energy.cpu, 3)},           {"cpu_sleep", rounded(energy.cpu_sleep, 3)},
-            {"camera", rounded(energy.camera, 3)},     {"total", rounded(energy.total(), 3)}};
+    const auto [radio, cpu, camera, storage, board] = energy;
+    return {{"radio",
+             {{"transmit", rounded(radio.transmit, 3)},
+              {"assess", rounded(radio.assess, 3)},
+              {"acknowledge", rounded(radio.acknowledge, 3)},
+              {"receive", rounded(radio.receive, 3)},
+              {"sleep", rounded(radio.sleep, 3)}}},
+            {"cpu", {{"run", rounded(cpu.run, 3)}, {"sleep", rounded(cpu.sleep, 3)}}},
+            {"camera",
+             {{"start", rounded(camera.start, 3)},
+              {"expose", rounded(camera.expose, 3)},
+              {"read", rounded(camera.read, 3)},
+              {"standby", rounded(camera.standby, 3)}}},
+            {"storage",
+             {{"write", rounded(storage.write, 3)},
+              {"read", rounded(storage.read, 3)},
+              {"standby", rounded(storage.standby, 3)}}},
+            {"board", {{"leakage", rounded(board, 3)}}},
+            {"total", rounded(energy.total(), 3)}};
+}
+
+/* Life is null where nothing is drawn and nothing lost. */
+Json battery_json(const SiteBattery &battery, const EnergyMj &energy, std::uint64_t duration_us)
+{
+    const double mean_uw = duration_us > 0 ? energy.total() / static_cast<double>(duration_us) * 1e9 : 0;
+    const BatteryLife life = battery_life(battery, mean_uw);
+    return {{"mean_power_uw", rounded(mean_uw, 3)},
+            {"drawn_uw", rounded(life.drawn_uw, 3)},
+            {"self_discharge_uw", rounded(life.self_discharge_uw, 3)},
+            {"life_days", std::isfinite(life.days) ? Json(rounded(life.days, 2)) : Json()}};
 }
 
 Json error_json(const MapError &error)
@@ -72,7 +100,7 @@ Json drops_json(const EmulatedNode &node)
             {"queue", counters.dropped_queue}};
 }
 
-Json node_json(const EmulatedNode &node, const AirTally &air, std::size_t maps_received)
+Json node_json(const EmulatedNode &node, const AirTally &air, std::size_t maps_received, Json battery)
 {
     const tsr_node_counters &counters = node.counters();
     const tsr_mac_counters &mac = node.mac_counters();
@@ -108,6 +136,7 @@ Json node_json(const EmulatedNode &node, const AirTally &air, std::size_t maps_r
             {"air", {{"frames", air.frames}, {"bytes", air.bytes}, {"lost", air.lost}}},
             {"dropped", drops_json(node)},
             {"energy_mj", energy_json(node.energy())},
+            {"battery", std::move(battery)},
             {"work", work_json(node)},
             {"memory_bytes", node.arena_len()}};
 }
@@ -178,7 +207,8 @@ Json make_summary(const Site &site, const Simulation &simulation, const std::vec
     Json pairs = Json::array();
     for (std::size_t i = 0; i < simulation.nodes().size(); ++i) {
         const EmulatedNode &node = *simulation.nodes()[i];
-        nodes.push_back(node_json(node, simulation.air_tally(i), count_received(maps, node.id())));
+        nodes.push_back(node_json(node, simulation.air_tally(i), count_received(maps, node.id()),
+                                  battery_json(site.battery, node.energy(), simulation.duration_us())));
     }
     for (const SitePair &pair : site.pairs) {
         const auto lead = std::find_if(nodes.begin(), nodes.end(),
@@ -191,6 +221,7 @@ Json make_summary(const Site &site, const Simulation &simulation, const std::vec
             {"virtual_time_s", rounded(static_cast<double>(simulation.duration_us()) / 1e6, 6)},
             {"settled", simulation.quiet()},
             {"sink_restarts", sink_restarts},
+            {"usable_battery_j", rounded(battery_life(site.battery, 0).usable_mj / 1000, 1)},
             {"totals", totals_json(nodes)},
             {"pairs", std::move(pairs)},
             {"nodes", std::move(nodes)},

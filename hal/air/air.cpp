@@ -68,7 +68,9 @@ struct Air::Radio {
     std::uint16_t address = 0;
     bool receiving = false;
     bool turning = false;           /* from a clear channel to the transmission: deaf */
-    bool sending = false;           /* its own PSDU is on air */
+    bool sending = false;           /* a PSDU of its own is on air: frame or acknowledgement */
+    bool sending_ack = false;       /* it is an acknowledgement */
+    bool sent = false;              /* the frame of the transmit() under way has been on air */
     bool busy = false;              /* between transmit() and TX_DONE */
     std::vector<std::uint8_t> psdu; /* of the transmit() under way */
     std::uint64_t attempt = 0;      /* counts transmit() calls */
@@ -128,10 +130,14 @@ void Air::account(Radio &radio) const
     const std::uint64_t now_us = clock_.now_us();
     const std::uint64_t passed_us = now_us - radio.accounted_us;
     radio.accounted_us = now_us;
+    AirTimes &times = radio.times;
     /* Sensing and waiting for an acknowledgement need the receiver, whatever the MAC wants. */
-    (radio.sending                   ? radio.times.transmitting
-     : radio.receiving || radio.busy ? radio.times.receiving
-                                     : radio.times.sleeping) += passed_us;
+    (radio.sending_ack           ? times.acknowledging
+     : radio.sending             ? times.transmitting
+     : radio.busy && !radio.sent ? times.assessing
+     : radio.busy                ? times.awaiting
+     : radio.receiving           ? times.receiving
+                                 : times.sleeping) += passed_us;
 }
 
 AirTimes Air::times(std::size_t index) const
@@ -180,6 +186,7 @@ tsr_status Air::transmit(void *radio, const std::uint8_t *psdu, std::size_t psdu
     Air &air = *self.air;
     air.account(self);
     self.busy = true;
+    self.sent = false;
     ++self.attempt;
     self.psdu.assign(psdu, psdu + psdu_len);
     air.update_listening(self);
@@ -257,6 +264,7 @@ void Air::send_data(Radio &radio)
         return;
     }
     begin(radio, radio.psdu);
+    radio.sent = true;
 }
 
 void Air::send_ack(Radio &radio, Radio &to, std::uint8_t sequence, std::uint64_t frame_end_us)
@@ -269,6 +277,7 @@ void Air::send_ack(Radio &radio, Radio &to, std::uint8_t sequence, std::uint64_t
     psdu.push_back(static_cast<std::uint8_t>(check));
     psdu.push_back(static_cast<std::uint8_t>(check >> 8));
     const auto ack = begin(radio, std::move(psdu));
+    radio.sending_ack = true;
     ack->acknowledges = &to;
     ack->frame_end_us = frame_end_us;
 }
@@ -295,6 +304,7 @@ void Air::end(const Transmission &transmission)
     Radio &sender = *radios_[transmission.sender];
     account(sender);
     sender.sending = false;
+    sender.sending_ack = false;
     update_listening(sender);
     const std::vector<Receipt> heard = leave(transmission);
 

@@ -59,7 +59,7 @@ def pair_targets(pair, node):
             yield target(f"{name}: {key}", round(statistics.mean(error[key] for error in errors), 4), unit,
                          how="mean over its maps; the scene is built from one picture pair")
     yield target(f"{name}: lead's energy", node["energy_mj"]["total"], "mJ", how="emulator's model, whole run")
-    yield target(f"{name}: lead's processor", node["energy_mj"]["cpu"], "mJ", how="emulator's model, whole run")
+    yield target(f"{name}: lead's processor", node["energy_mj"]["cpu"]["run"], "mJ", how="emulator's model, whole run")
 
 
 def bench():

@@ -191,7 +191,10 @@ TEST_F(AirTest, SleepDoesNotLoseTheAcknowledgement)
     EXPECT_EQ(ended[0][0].outcome, TSR_RADIO_ACKED);
     const AirTimes times = air->times(0);
     EXPECT_EQ(times.transmitting, on_air_us(40));
-    EXPECT_EQ(times.receiving, kSenseUs + TSR_RADIO_TURNAROUND_US + on_air_us(5));
+    EXPECT_EQ(times.assessing, kSenseUs);
+    EXPECT_EQ(times.awaiting, TSR_RADIO_TURNAROUND_US + on_air_us(5));
+    EXPECT_EQ(times.receiving, 0u);
+    EXPECT_EQ(air->times(1).acknowledging, on_air_us(5));
 }
 
 /* The frame that fills the ring is still acknowledged. */
@@ -333,7 +336,9 @@ TEST_F(AirTest, TimesAddUp)
     }
     for (std::size_t i = 0; i < 3; ++i) {
         const AirTimes times = air->times(i);
-        EXPECT_EQ(times.transmitting + times.receiving + times.sleeping, queue.now_us());
+        EXPECT_EQ(times.transmitting + times.assessing + times.awaiting + times.acknowledging + times.receiving +
+                      times.sleeping,
+                  queue.now_us());
     }
     EXPECT_EQ(air->times(2).sleeping, queue.now_us());
 }

@@ -34,6 +34,11 @@ frame_loss = 0.125
 [thresholds]
 similarity_px2 = 1
 
+[battery]
+capacity_mah = 3500
+voltage_v = 3
+self_discharge_percent_year = 0.5
+
 [[node]]
 id = 1
 role = "gateway"
@@ -114,6 +119,10 @@ TEST(HostSite, ReadsEveryField)
     EXPECT_EQ(site.radio.cca_threshold_dbm, -87.0);
     EXPECT_EQ(site.radio.frame_loss, 0.125);
     EXPECT_EQ(site.thresholds.similarity_px2, 1.0);
+    EXPECT_EQ(site.battery.capacity_mah, 3500.0);
+    EXPECT_EQ(site.battery.voltage_v, 3.0);
+    EXPECT_EQ(site.battery.self_discharge_percent_year, 0.5);
+    EXPECT_EQ(site.battery.usable_percent, SiteBattery{}.usable_percent);
     ASSERT_EQ(site.nodes.size(), 4u);
     EXPECT_EQ(site.node(2)->name, "attic");
     EXPECT_EQ(site.node(2)->position_m[1], 2.5);
@@ -148,6 +157,7 @@ TEST(HostSite, WritesWhatItReads)
     site.radio.fading_period_ms = 333;
     site.radio.capture_db = 0.5;
     site.radio.cca_threshold_dbm = -77;
+    site.battery = {2600, 1.0 / 0.3, 70, 2.5, 80, 12.5};
     const std::uint16_t lead = site.pairs[0].lead;
     for (SiteNode &node : site.nodes) {
         if (node.id == lead) {
@@ -166,6 +176,12 @@ TEST(HostSite, WritesWhatItReads)
     EXPECT_EQ(read.radio.fading_period_ms, 333u);
     EXPECT_EQ(read.radio.capture_db, 0.5);
     EXPECT_EQ(read.radio.cca_threshold_dbm, -77.0);
+    EXPECT_EQ(read.battery.capacity_mah, 2600.0);
+    EXPECT_EQ(read.battery.voltage_v, 1.0 / 0.3);
+    EXPECT_EQ(read.battery.usable_percent, 70.0);
+    EXPECT_EQ(read.battery.self_discharge_percent_year, 2.5);
+    EXPECT_EQ(read.battery.converter_efficiency_percent, 80.0);
+    EXPECT_EQ(read.battery.converter_quiescent_ua, 12.5);
     EXPECT_EQ(read.pairs[0].left.rotation, site.pairs[0].left.rotation);
     EXPECT_EQ(read.pairs[0].d0_px, 1.5);
     ASSERT_EQ(read.node(lead)->watch.size(), 2u);
@@ -207,6 +223,24 @@ TEST(HostSite, RefusesRadiosThatCannotBe)
     EXPECT_THROW(check_site(site), InputError);
 }
 
+TEST(HostSite, RefusesBatteriesThatCannotBe)
+{
+    EXPECT_SITE_REFUSED(with("capacity_mah = 3500", "capacity_mah = 0"),
+                        "site.toml:20: battery.capacity_mah: 0 is outside 1..");
+    EXPECT_SITE_REFUSED(with("capacity_mah = 3500", "capacity_mah = \"big\""),
+                        "site.toml:20: battery.capacity_mah: is not");
+    EXPECT_SITE_REFUSED(with("voltage_v = 3", "voltage_v = -3"), "site.toml:21: battery.voltage_v: -3 is outside");
+    EXPECT_SITE_REFUSED(with("voltage_v = 3", "voltage_v = nan"), "site.toml:21: battery.voltage_v: ");
+    EXPECT_SITE_REFUSED(with("voltage_v = 3", "usable_percent = 101"), "battery.usable_percent: 101 is outside 1..100");
+    EXPECT_SITE_REFUSED(with("voltage_v = 3", "converter_efficiency_percent = 0"),
+                        "converter_efficiency_percent: 0 is");
+    EXPECT_SITE_REFUSED(with("voltage_v = 3", "converter_quiescent_ua = -1"), "converter_quiescent_ua: -1 is outside");
+    EXPECT_SITE_REFUSED(with("voltage_v = 3", "cells = 2"), "site.toml:21: battery.cells: unknown field");
+    Site site = small_site();
+    site.battery.self_discharge_percent_year = 101;
+    EXPECT_EQ(test::refusal([&] { check_site(site); }), "site: battery.self_discharge_percent_year: is outside 0..100");
+}
+
 TEST(HostSite, RefusesRectanglesThatCannotBeWatched)
 {
     const std::string good = "watch = [[0, 8, 32, 16], [159, 119, 1, 1]]";
@@ -233,7 +267,7 @@ TEST(HostSite, RefusesTreesThatCannotWork)
     EXPECT_SITE_REFUSED(with("id = 4\n", "id = 3\n"), "node 3: id: is used twice");
     EXPECT_SITE_REFUSED(with("id = 4\n", "id = 0\n"), "id: 0 is outside 1..65533");
     EXPECT_SITE_REFUSED(with("id = 4\n", "id = 0xfffe\n"), "id: 65534 is outside");
-    EXPECT_SITE_REFUSED(with("role = \"relay\"", "role = \"rely\""), "site.toml:26: node 2: role: 'rely' is not");
+    EXPECT_SITE_REFUSED(with("role = \"relay\"", "role = \"rely\""), "site.toml:31: node 2: role: 'rely' is not");
     EXPECT_SITE_REFUSED(with("role = \"relay\"", "role = \"gateway\""), "there is exactly one");
     EXPECT_SITE_REFUSED(with("role = \"gateway\"", "role = \"relay\""), "no node has role = \"gateway\"");
     EXPECT_SITE_REFUSED(with("parent = 1", "parent = 9"), "node 2: parent: there is no node 9");

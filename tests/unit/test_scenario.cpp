@@ -52,6 +52,8 @@ TEST_F(ScenarioFile, HasDefaultsAndTakesSettings)
     EXPECT_EQ(set.pairs.layout.count, 3);
     EXPECT_EQ(set.scene.level_step_m, 0.5);
     EXPECT_EQ(set.seed, 9u);
+    const auto staging = tsr::stage_scenario(tsr::load_scenario(write(kTank), {"battery.capacity_mah=1500"}));
+    EXPECT_EQ(staging.site.battery.capacity_mah, 1500);
     EXPECT_TRUE(tsr::is_scenario_file(write(kTank)));
     EXPECT_FALSE(tsr::is_scenario_file(write("[site]\nname = \"s\"\n")));
 }
@@ -62,6 +64,8 @@ TEST_F(ScenarioFile, RefusesByLineAndField)
     EXPECT_EQ(refusal("name = \"t\"\n[scene]\nkind = \"moon\"\n").substr(0, 48),
               "scenario.toml:3: scene.kind: 'moon' is none of b");
     EXPECT_EQ(refusal(std::string(kTank) + "lids = 3\n"), "scenario.toml:5: scene.lids: unknown field");
+    EXPECT_EQ(refusal(std::string(kTank) + "[battery]\nvoltage_v = 0\n").substr(0, 51),
+              "scenario.toml:6: battery.voltage_v: 0 is outside 0.");
     EXPECT_EQ(refusal(std::string(kTank) + "people = 3\n"), "scenario.toml:5: scene.people: unknown field");
     EXPECT_EQ(refusal("name = \"t\"\nduration_s = -1\n[scene]\nkind = \"tank\"\n").substr(0, 29),
               "scenario.toml:2: duration_s: ");

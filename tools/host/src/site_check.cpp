@@ -2,9 +2,11 @@
 #include "site_faults.h"
 
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <set>
 
+#include "site_battery.h"
 #include "tsr/host/input_error.h"
 
 namespace tsr
@@ -265,6 +267,18 @@ void check_radio(const Site &site)
     }
 }
 
+void check_battery(const Site &site)
+{
+    for (const BatteryField &field : kBatteryFields) {
+        const double value = site.battery.*field.value;
+        if (!(value >= field.minimum && value <= field.maximum)) {
+            char range[64];
+            std::snprintf(range, sizeof range, "is outside %g..%g", field.minimum, field.maximum);
+            refuse_site(site, 0, std::string("battery.") + field.name, range);
+        }
+    }
+}
+
 void check_settings(const Site &site)
 {
     if (const std::string fault = fault_in_name(site.name); !fault.empty()) {
@@ -277,6 +291,7 @@ void check_settings(const Site &site)
         refuse_site(site, 0, "site.channel", "is outside 11..26");
     }
     check_radio(site);
+    check_battery(site);
     const SiteThresholds &limits = site.thresholds;
     /* In sixteenths of a pixel the node's fields have 8 bits and 16 bits; 0 would mean its default. */
     if (!(limits.similarity_clip_px >= 1.0 / 16 && limits.similarity_clip_px <= 255.0 / 16)) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "site_battery.h"
 #include "tsr/host/site_fields.h"
 #include "tsr/host/toml_fields.h"
 
@@ -153,6 +154,14 @@ void read_thresholds(TomlFields &fields, SiteThresholds &limits)
     fields.refuse_unknown();
 }
 
+void read_battery(TomlFields &fields, SiteBattery &battery)
+{
+    for (const BatteryField &field : kBatteryFields) {
+        battery.*field.value = fields.number(field.name, field.minimum, field.maximum, battery.*field.value);
+    }
+    fields.refuse_unknown();
+}
+
 Site load_site(const std::filesystem::path &file)
 {
     const TomlFile toml(file);
@@ -169,6 +178,9 @@ Site load_site(const std::filesystem::path &file)
     }
     if (auto thresholds = top.table("thresholds")) {
         read_thresholds(*thresholds, site.thresholds);
+    }
+    if (auto battery = top.table("battery")) {
+        read_battery(*battery, site.battery);
     }
     for (TomlFields &fields : top.tables("node")) {
         site.nodes.push_back(read_node(fields));

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "site_battery.h"
 #include "tsr/host/atomic_file.h"
 #include "tsr/host/site.h"
 
@@ -80,6 +81,10 @@ std::string head_text(const Site &site)
     text += line("similarity_overlap_min", number(limits.similarity_overlap_min));
     text += line("change_deviation_min", std::to_string(limits.change_deviation_min));
     text += line("change_cells_min", std::to_string(limits.change_cells_min));
+    text += "\n[battery]\n";
+    for (const BatteryField &field : kBatteryFields) {
+        text += line(field.name, number(site.battery.*field.value));
+    }
     return text;
 }
 

@@ -151,6 +151,7 @@ Scenario load_scenario(const std::filesystem::path &file, const std::vector<std:
     read_table(top, "camera", read_camera, scenario.camera);
     read_table(top, "radio", read_radio, scenario.radio);
     read_table(top, "thresholds", read_thresholds, scenario.thresholds);
+    read_table(top, "battery", read_battery, scenario.battery);
     top.refuse_unknown();
     return scenario;
 }

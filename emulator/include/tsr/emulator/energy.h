@@ -1,10 +1,10 @@
 /*
- * Energy of a node by part, from what its parts did and for how long.
+ * Energy of a node by part and state, from what its parts did and for how long.
  *
- *   E = sum over states of U I t
+ *   E = sum over parts and their states of U I t       docs/energy.md, eq. (1)
  *
- * Every current is a data-sheet figure; docs/energy.md gives the sources and
- * says which could not be confirmed.
+ * Currents come from data sheets, or are assumptions where no sheet says:
+ * docs/energy.md gives each one's source and whether it could be confirmed.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -21,26 +21,65 @@ extern "C" {
 namespace tsr
 {
 
+/* In docs/energy.md's order. */
 struct PowerModel {
     double supply_v = 3.0;
-    double radio_tx_ma = 6.40;    /* nRF52840 PS v1.7, 6.20.15.3: 0 dBm, DC/DC */
-    double radio_rx_ma = 6.53;    /* same: 802.15.4, DC/DC */
-    double radio_sleep_ma = 0.0;  /* counted in cpu_sleep_ma */
-    double cpu_ua_per_mhz = 52.0; /* same, 5.2.1.1: running from flash, cache, DC/DC */
-    double cpu_mhz = 64.0;
-    double cpu_sleep_ma = 0.0032;        /* System ON with full RAM retention */
-    double cycles_per_instruction = 1.3; /* an estimate; instructions are exact */
-    double camera_mw = 2.0;              /* HM01B0 product brief: QVGA at 30 fps */
+    double radio_tx_ma = 6.40;             /* nRF52840, IRADIO_TX5: 802.15.4, 0 dBm, DC/DC */
+    double radio_rx_ma = 6.53;             /* IRADIO_RX2: 802.15.4, DC/DC; senses and waits with it too */
+    double radio_sleep_ma = 0.0;           /* one chip: counted in cpu_sleep_ma */
+    double cpu_ua_per_mhz = 52.0;          /* running from flash, cache, DC/DC */
+    double cpu_mhz = 64.0;                 /* its only clock */
+    double cpu_sleep_ma = 0.0032;          /* System ON, all of the RAM, RTC */
+    double cycles_per_instruction = 1.3;   /* an estimate; instructions are exact */
+    double camera_mw = 2.0;                /* HM01B0, QVGA: start-up, exposure and readout alike */
+    double camera_standby_mw = 0.1;        /* an assumption */
+    std::uint64_t camera_start_us = 5'000; /* an assumption: from standby to the start of exposure */
+    double storage_write_ma = 6.0;         /* MX25R6435F: programming or erasing */
+    double storage_read_ma = 4.0;          /* reading, one line */
+    double storage_standby_ma = 0.005;     /* not selected, not in deep power-down */
+    double board_ma = 0.001;               /* leakage of capacitors and pull-ups: an assumption */
 };
 
-struct EnergyMj {
-    double radio_tx = 0;
-    double radio_rx = 0;
-    double cpu = 0;
-    double cpu_sleep = 0;
-    double camera = 0;
+/* What the parts of one node did. */
+struct NodeTimes {
+    std::uint64_t total_us = 0;
+    AirTimes radio;
+    std::uint64_t cpu_busy_us = 0; /* at most total_us */
+    unsigned cameras = 0;          /* sensors on the board */
+    std::uint64_t captures = 0;    /* of all of them */
+    std::uint64_t exposure_us = 0; /* of one capture */
+    std::uint64_t readout_us = 0;
+    std::uint64_t storage_writing_us = 0; /* nodes do not store yet: 0 */
+    std::uint64_t storage_reading_us = 0;
+};
 
-    double total() const { return radio_tx + radio_rx + cpu + cpu_sleep + camera; }
+/* mJ, never negative. */
+struct EnergyMj {
+    struct Radio {
+        double transmit = 0;
+        double assess = 0;      /* CCA and turnaround */
+        double acknowledge = 0; /* sending acknowledgements and waiting for them */
+        double receive = 0;
+        double sleep = 0;
+    } radio;
+    struct Cpu {
+        double run = 0;
+        double sleep = 0;
+    } cpu;
+    struct Camera {
+        double start = 0;
+        double expose = 0;
+        double read = 0;
+        double standby = 0;
+    } camera;
+    struct Storage {
+        double write = 0;
+        double read = 0;
+        double standby = 0;
+    } storage;
+    double board = 0;
+
+    double total() const;
 };
 
 /* Measured Cortex-M4 instructions of one unit of work (tsr/node/node.h), by
@@ -50,8 +89,8 @@ double instructions_per_unit(tsr_work_kind kind);
 /* Time the processor takes for work, whole microseconds, at least 1. */
 std::uint64_t work_time_us(const PowerModel &model, tsr_work_kind kind, std::uint32_t units);
 
-EnergyMj energy_of(const PowerModel &model, const AirTimes &radio, std::uint64_t cpu_busy_us, std::uint64_t total_us,
-                   std::uint64_t camera_us);
+/* A part's standby or sleep is what its other states leave of total_us, at least nothing. */
+EnergyMj energy_of(const PowerModel &model, const NodeTimes &times);
 
 } // namespace tsr
 

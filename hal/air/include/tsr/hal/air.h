@@ -34,9 +34,12 @@ extern "C" {
 namespace tsr
 {
 
-struct AirTimes { /* what a radio did, us */
-    std::uint64_t transmitting = 0;
-    std::uint64_t receiving = 0;
+struct AirTimes {                    /* what a radio did, us; the six add up to the time that has passed */
+    std::uint64_t transmitting = 0;  /* frames of its own */
+    std::uint64_t assessing = 0;     /* from transmit() to the frame or to a busy channel: CCA, turnaround */
+    std::uint64_t awaiting = 0;      /* from the end of a frame to its acknowledgement or the end of the wait */
+    std::uint64_t acknowledging = 0; /* acknowledgements on air for others' frames */
+    std::uint64_t receiving = 0;     /* listening, whether or not there is anything to hear */
     std::uint64_t sleeping = 0;
 };
 

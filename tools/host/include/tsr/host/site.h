@@ -67,6 +67,17 @@ struct SiteThresholds {
     int change_cells_min = 0;            /* touching cells that wake the pair; 0 = the node's default */
 };
 
+/* What feeds each node, and the converter between it and the board; by default a Saft LS 26500 and a TPS62740
+ * (docs/energy.md gives the sources). */
+struct SiteBattery {
+    double capacity_mah = 7700; /* nominal, of all its cells together */
+    double voltage_v = 3.6;     /* under load */
+    double usable_percent = 85; /* of the capacity, before the node stops */
+    double self_discharge_percent_year = 1;
+    double converter_efficiency_percent = 90;
+    double converter_quiescent_ua = 0.46; /* drawn from the battery beside the load */
+};
+
 constexpr std::size_t kWatchMax = 4; /* rectangles */
 
 struct SiteRectangle { /* px of the left camera's picture */
@@ -123,6 +134,7 @@ struct Site {
     std::uint64_t seed = 1;
     SiteRadio radio;
     SiteThresholds thresholds;
+    SiteBattery battery;
     std::vector<SiteNode> nodes;
     std::vector<SitePair> pairs;
 

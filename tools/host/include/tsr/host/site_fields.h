@@ -12,9 +12,11 @@
 namespace tsr
 {
 
-/* [radio] and [thresholds]: what the table gives, the rest unchanged. Throw InputError; unknown fields are refused. */
+/* [radio], [thresholds] and [battery]: what the table gives, the rest unchanged. Throw InputError; unknown fields are
+ * refused. */
 void read_radio(TomlFields &fields, SiteRadio &radio);
 void read_thresholds(TomlFields &fields, SiteThresholds &limits);
+void read_battery(TomlFields &fields, SiteBattery &battery);
 
 } // namespace tsr
 
