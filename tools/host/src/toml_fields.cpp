@@ -53,14 +53,15 @@ std::string shown(double value)
 }
 
 /* Tables are joined, everything else is replaced. Values are moved: toml++ forgets where a copied one stood. */
-void overwrite(toml::table &table, toml::table by)
+void overwrite(toml::table &table, toml::table &&by)
 {
-    for (auto &&[key, value] : by) {
-        toml::table *inner = table[key].as_table();
+    for (auto &&entry : by) {
+        toml::node &value = entry.second;
+        toml::table *inner = table[entry.first].as_table();
         if (inner != nullptr && value.is_table()) {
             overwrite(*inner, std::move(*value.as_table()));
         } else {
-            value.visit([&](auto &concrete) { table.insert_or_assign(key, std::move(concrete)); });
+            value.visit([&](auto &concrete) { table.insert_or_assign(entry.first, std::move(concrete)); });
         }
     }
 }

@@ -53,10 +53,11 @@ void place_pair(Staging &staging, const Scenario &scenario, const scene::Placeme
 SitePose site_pose(const Eigen::Isometry3d &pose)
 {
     SitePose site;
-    for (int row = 0; row < 3; ++row) {
-        site.position_m[static_cast<std::size_t>(row)] = pose.translation()[row];
-        for (int column = 0; column < 3; ++column) {
-            site.rotation[static_cast<std::size_t>(3 * row + column)] = pose.linear()(row, column);
+    for (std::size_t row = 0; row < 3; ++row) {
+        site.position_m[row] = pose.translation()[static_cast<Eigen::Index>(row)];
+        for (std::size_t column = 0; column < 3; ++column) {
+            site.rotation[3 * row + column] =
+                pose.linear()(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column));
         }
     }
     return site;

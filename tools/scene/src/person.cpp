@@ -77,19 +77,17 @@ Skeleton skeleton_of(const Path::Place &place, const Pose &pose, float height)
     Skeleton parts;
     parts[kTorso] = base * joint({0, 0, 0}, -pose.torso); /* its mesh stands on the hip */
     parts[kHead] = parts[kTorso] * Eigen::Translation3f(0.01F * height, 0, 0.40F * height);
-    for (int side = 0; side < 2; ++side) {
+    for (std::size_t side = 0; side < 2; ++side) {
         const float sign = side == 0 ? 1.0F : -1.0F;
         const float swing = sign * std::sin(phase) * pace;
         const float lift = std::fmax(sign * std::cos(phase), 0.0F) * pace;
         const Eigen::Affine3f thigh = base * joint({0, sign * 0.055F * height, 0}, pose.thigh + 25 * swing);
-        parts[static_cast<std::size_t>(kThighLeft + side)] = thigh;
-        parts[static_cast<std::size_t>(kShinLeft + side)] =
-            thigh * joint({0, 0, -0.25F * height}, pose.shin - pose.thigh - 40 * lift);
+        parts[kThighLeft + side] = thigh;
+        parts[kShinLeft + side] = thigh * joint({0, 0, -0.25F * height}, pose.shin - pose.thigh - 40 * lift);
         const Eigen::Affine3f shoulder =
             parts[kTorso] * joint({0, sign * 0.125F * height, 0.29F * height}, pose.torso + pose.arm - 20 * swing);
-        parts[static_cast<std::size_t>(kArmLeft + side)] = shoulder;
-        parts[static_cast<std::size_t>(kForearmLeft + side)] =
-            shoulder * joint({0, 0, -0.17F * height}, pose.forearm - pose.arm);
+        parts[kArmLeft + side] = shoulder;
+        parts[kForearmLeft + side] = shoulder * joint({0, 0, -0.17F * height}, pose.forearm - pose.arm);
     }
     return parts;
 }
@@ -107,13 +105,14 @@ std::array<Mesh, kPartCount> part_meshes(float height, const Clothes &clothes)
                 -0.012F * height, 0, 0.027F * height));
     meshes[kHead].append(shifted(make_cylinder(0.03F * height, 0.03F * height, 0.06F * height, kSides, clothes.skin), 0,
                                  0, -0.1F * height));
-    for (int side = 0; side < 2; ++side) {
-        const auto part = [side](Part left) { return static_cast<std::size_t>(left + side); };
-        meshes[part(kArmLeft)] = make_limb(0.034F * height, 0.028F * height, 0.17F * height, kSides, clothes.top);
-        meshes[part(kForearmLeft)] = make_limb(0.027F * height, 0.022F * height, 0.18F * height, kSides, clothes.skin);
-        meshes[part(kThighLeft)] = make_limb(0.055F * height, 0.04F * height, 0.25F * height, kSides, clothes.trousers);
-        meshes[part(kShinLeft)] = make_limb(0.038F * height, 0.026F * height, 0.25F * height, kSides, clothes.trousers);
-        meshes[part(kShinLeft)].append(make_centred_box(
+    for (std::size_t side = 0; side < 2; ++side) {
+        meshes[kArmLeft + side] = make_limb(0.034F * height, 0.028F * height, 0.17F * height, kSides, clothes.top);
+        meshes[kForearmLeft + side] = make_limb(0.027F * height, 0.022F * height, 0.18F * height, kSides, clothes.skin);
+        meshes[kThighLeft + side] =
+            make_limb(0.055F * height, 0.04F * height, 0.25F * height, kSides, clothes.trousers);
+        meshes[kShinLeft + side] =
+            make_limb(0.038F * height, 0.026F * height, 0.25F * height, kSides, clothes.trousers);
+        meshes[kShinLeft + side].append(make_centred_box(
             {0.04F * height, 0, -0.262F * height}, {0.15F * height, 0.055F * height, 0.04F * height}, clothes.hair));
     }
     return meshes;

@@ -91,6 +91,7 @@ Eigen::AlignedBox2f screen_box(const std::vector<Eigen::Vector3f> &points, const
 {
     constexpr float kNear = 0.01F;
     std::vector<Eigen::Vector3f> seen;
+    seen.reserve(points.size());
     for (const Eigen::Vector3f &point : points) {
         seen.push_back(to_camera * point);
     }

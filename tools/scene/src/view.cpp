@@ -63,8 +63,8 @@ Eigen::Vector3f View::direction_of(double u, double v) const
 
 void View::trace_pixel(const RayCaster &caster, std::size_t pixel)
 {
-    const auto row = static_cast<float>(pixel / static_cast<std::size_t>(camera_.width));
-    const float moment = row / static_cast<float>(camera_.height);
+    const std::size_t row = pixel / static_cast<std::size_t>(camera_.width);
+    const float moment = static_cast<float>(row) / static_cast<float>(camera_.height);
     const float pixel_rad = kSampleFootprint / static_cast<float>(camera_.focal_px);
     Shade sum;
     for (std::size_t i = 0; i < kSamples; ++i) {

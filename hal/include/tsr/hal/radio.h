@@ -49,17 +49,19 @@ enum tsr_radio_event_kind {
     TSR_RADIO_TX_DONE
 };
 
+struct tsr_radio_received {
+    const uint8_t *psdu; /* borrowed */
+    uint8_t psdu_len;    /* with FCS, not more than 127 */
+    int8_t rssi_dbm;
+};
+
 struct tsr_radio_event {
     enum tsr_radio_event_kind kind;
     /* End of the frame (its last octet) on air, received or sent: the same
      * instant at both ends but for the flight time. */
     uint64_t time_us;
     union {
-        struct {
-            const uint8_t *psdu; /* borrowed */
-            uint8_t psdu_len;    /* with FCS, not more than 127 */
-            int8_t rssi_dbm;
-        } received;
+        struct tsr_radio_received received;
         enum tsr_radio_outcome outcome;
     };
 };
