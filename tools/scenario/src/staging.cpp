@@ -138,6 +138,7 @@ Staging stage_scenario(const Scenario &scenario)
     site.seed = scenario.seed;
     site.radio = scenario.radio;
     site.thresholds = scenario.thresholds;
+    site.faults = scenario.faults;
     place_pairs(staging, scenario);
     refuse_impossible(scenario, staging);
     join_tree(site, kReachM);

@@ -15,6 +15,8 @@ namespace tsr
 /* [radio] and [thresholds]: what the table gives, the rest unchanged. Throw InputError; unknown fields are refused. */
 void read_radio(TomlFields &fields, SiteRadio &radio);
 void read_thresholds(TomlFields &fields, SiteThresholds &limits);
+/* All [[fault]] tables of a file; whether their nodes can have them, check_site() tells. */
+std::vector<SiteFault> read_faults(TomlFields &top);
 
 } // namespace tsr
 

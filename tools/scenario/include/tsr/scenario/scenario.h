@@ -53,6 +53,7 @@ struct Scenario {
     ScenarioCamera camera;
     SiteRadio radio;
     SiteThresholds thresholds;
+    std::vector<SiteFault> faults; /* of nodes as stage_scenario() numbers them */
 };
 
 /* Is it a scenario, not a site? By its having a [scene]. Throws InputError if it is no TOML. */
