@@ -52,7 +52,10 @@ class ClockedSource : public FrameSource
     }
 
     ImageSize size() const override { return source_->size(); }
-    void show(std::uint64_t time_us, const tsr_gray &image) override { source_->show(clock_.virtual_us(time_us), image); }
+    void show(std::uint64_t time_us, const tsr_gray &image) override
+    {
+        source_->show(clock_.virtual_us(time_us), image);
+    }
 
   private:
     std::unique_ptr<FrameSource> source_;
@@ -122,8 +125,8 @@ void EmulatedNode::power_on(std::uint32_t counter_start)
     hal.port = around_.port;
     tsr_node_config config = setup_->config;
     config.counter_start = counter_start != 0 ? counter_start : config.counter_start;
-    const tsr_status status = tsr_node_init(node_.get(), &config, &hal,
-                                            reinterpret_cast<std::uint8_t *>(arena_.data()), arena_len(), local_us());
+    const tsr_status status = tsr_node_init(node_.get(), &config, &hal, reinterpret_cast<std::uint8_t *>(arena_.data()),
+                                            arena_len(), local_us());
     if (status != TSR_OK) {
         throw InputError(site_.file.string(), site_node_.name,
                          std::string("does not start: ") + tsr_status_name(status));
@@ -262,7 +265,13 @@ void EmulatedNode::note_phase(tsr_node_phase phase)
 
 bool EmulatedNode::at_rest() const
 {
-    return !powered() || (phase() <= TSR_PHASE_WATCHING && tsr_node_is_quiet(node_.get()));
+    if (!powered()) {
+        return true;
+    }
+    /* What a lost capture, view or map has shown is still owed: the next frame is captured again. */
+    const bool owes_map =
+        node_->recapture && (node_->config.role == TSR_ROLE_LEAD || node_->config.role == TSR_ROLE_BINOCULAR);
+    return phase() <= TSR_PHASE_WATCHING && !owes_map && tsr_node_is_quiet(node_.get());
 }
 
 tsr_node_phase EmulatedNode::phase() const

@@ -106,8 +106,7 @@ void FaultTimeline::drift(EmulatedNode &node, const SiteFault &fault)
 void FaultTimeline::lose_link(EmulatedNode &struck, const SiteFault &fault)
 {
     const std::size_t other = fault.other == 0 ? air::kEveryRadio : node(fault.other).radio_index();
-    const std::size_t number =
-        world_.air.losses().begin(struck.radio_index(), other, fault.loss_db, fault.frame_loss);
+    const std::size_t number = world_.air.losses().begin(struck.radio_index(), other, fault.loss_db, fault.frame_loss);
     when_over(fault, [this, number] { world_.air.losses().end(number); });
 }
 

@@ -70,12 +70,13 @@ tsr_status Simulation::write_port(void *self, const std::uint8_t *bytes, std::si
 {
     auto &simulation = *static_cast<Simulation *>(self);
     auto answer = simulation.sink_.exchange(bytes, len);
-    simulation.queue_.at(simulation.queue_.now_us() + kSinkAnswerUs,
-                         [&gateway = *simulation.gateway_, life = simulation.gateway_->lives(), answer = std::move(answer)] {
-                             if (gateway.lives() == life) { /* what a port still held is lost with the power */
-                                 gateway.receive_from_port(answer.data(), answer.size());
-                             }
-                         });
+    simulation.queue_.at(
+        simulation.queue_.now_us() + kSinkAnswerUs,
+        [&gateway = *simulation.gateway_, life = simulation.gateway_->lives(), answer = std::move(answer)] {
+            if (gateway.lives() == life) { /* what a port still held is lost with the power */
+                gateway.receive_from_port(answer.data(), answer.size());
+            }
+        });
     return TSR_OK;
 }
 
@@ -88,7 +89,8 @@ void Simulation::note(const PhaseChange &change)
 
 std::uint64_t Simulation::virtual_us(std::uint16_t node, std::uint64_t local_us) const
 {
-    const auto found = std::find_if(nodes_.begin(), nodes_.end(), [node](const auto &one) { return one->id() == node; });
+    const auto found =
+        std::find_if(nodes_.begin(), nodes_.end(), [node](const auto &one) { return one->id() == node; });
     return found == nodes_.end() ? local_us : (*found)->clock().virtual_us(local_us);
 }
 
@@ -105,8 +107,8 @@ void Simulation::run(const Progress &progress)
         node->power_on();
     }
     faults_->schedule(site_.faults);
-    /* Every watching node sees the last frame at least once, and however short a recording is, there is a first map, also of a node that a fault
-     * has started anew. */
+    /* Every watching node sees the last frame at least once, and however short a recording is, there is a first map,
+     * also of a node that a fault has started anew. */
     const std::uint64_t played_us =
         std::max(pictures_.end_us() + 2 * longest_period_us,
                  FaultTimeline::last_us(site_.faults) + kFirstMapFrames * longest_period_us);

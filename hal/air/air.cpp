@@ -209,7 +209,8 @@ void Air::arrive(const Transmission &transmission)
     signal.end_us = transmission.end_us;
     signal.channel = transmission.channel;
     for (const air::Link &link : neighbours_.of(transmission.sender)) {
-        signal.level_q4 = link.mean_q4 + propagation_.fading_q4(transmission.sender, link.radio, transmission.start_us) -
+        signal.level_q4 = link.mean_q4 +
+                          propagation_.fading_q4(transmission.sender, link.radio, transmission.start_us) -
                           losses_.loss_q4(transmission.sender, link.radio);
         radios_[link.radio]->receiver.begin(signal);
         ++arrivals_;
@@ -354,12 +355,13 @@ void Air::answer(Radio &sender, Radio *receiver, const Transmission &transmissio
 {
     const std::uint64_t end_us = transmission.end_us;
     if (receiver != nullptr) {
-        clock_.at(end_us + TSR_RADIO_TURNAROUND_US, [this, receiver, life = receiver->life, &sender, asker_life = sender.life,
-                                                     sequence = transmission.psdu[2], end_us] {
-            if (receiver->life == life) {
-                send_ack(*receiver, sender, asker_life, sequence, end_us);
-            }
-        });
+        clock_.at(end_us + TSR_RADIO_TURNAROUND_US,
+                  [this, receiver, life = receiver->life, &sender, asker_life = sender.life,
+                   sequence = transmission.psdu[2], end_us] {
+                      if (receiver->life == life) {
+                          send_ack(*receiver, sender, asker_life, sequence, end_us);
+                      }
+                  });
     }
     clock_.at(end_us + TSR_RADIO_ACK_WAIT_US, [this, &sender, end_us, attempt = sender.attempt] {
         if (sender.busy && sender.attempt == attempt) {

@@ -17,8 +17,7 @@ bool LinkLosses::Loss::concerns(std::size_t from, std::size_t to) const
 
 std::size_t LinkLosses::begin(std::size_t radio, std::size_t other, double loss_db, double frame_loss)
 {
-    const auto kept_q32 =
-        static_cast<std::uint64_t>(std::llround((1 - frame_loss) * static_cast<double>(kCertainQ32)));
+    const auto kept_q32 = static_cast<std::uint64_t>(std::llround((1 - frame_loss) * static_cast<double>(kCertainQ32)));
     losses_.push_back({begun_, radio, other, air::level_q4(loss_db), kept_q32});
     return begun_++;
 }

@@ -1,18 +1,9 @@
 /*
- * Faults on a timeline: what each does to its node, that the rest of the tree
- * keeps delivering, and power lost at every event of a run.
- *
- * Three things hold always: nothing crashes, what a node counts as acknowledged is
- * in the store, and no map is stored twice. The one exception has a test of its
- * own: counters that start again (ARebootThatForgetsItsCounters).
- * TSR_FAULT=KIND:NODE:EVENT replays one run of the sweep.
+ * Faults on a timeline: what each does to its node, and that the rest of the
+ * tree keeps delivering. Power lost at every event is test_power_lost.cpp's.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
-#include <cstdio>
-#include <cstdlib>
-#include <set>
-
 #include <gtest/gtest.h>
 
 #include "memory_run.h"
@@ -23,14 +14,15 @@ namespace tsr
 namespace
 {
 
+using test::expect_kept;
+using test::kBinocular;
+using test::kGateway;
+using test::kLead;
+using test::kRelay;
+using test::kWing;
 using test::MemoryRun;
 using test::short_site;
 
-constexpr std::uint16_t kGateway = 1;
-constexpr std::uint16_t kRelay = 2;
-constexpr std::uint16_t kLead = 3;
-constexpr std::uint16_t kWing = 4;
-constexpr std::uint16_t kBinocular = 5;
 constexpr std::uint64_t kSecond = 1'000'000;
 constexpr std::uint32_t kHigher = 1'000'000; /* counters that no earlier life has used */
 constexpr std::uint64_t kBefore = 700'000;   /* the first maps are there, the scene has not changed */
@@ -40,19 +32,6 @@ Site with(SiteFault fault, bool flat = false)
     Site site = short_site(flat);
     site.faults.push_back(fault);
     return site;
-}
-
-/* Nothing acknowledged is lost, nothing is there twice. */
-void expect_kept(MemoryRun &run)
-{
-    for (const std::uint16_t id : {kLead, kBinocular}) {
-        const auto maps = run.maps_of(id);
-        EXPECT_LE(run.node(id).counters().maps_sent, maps.size()) << "acknowledged but not stored: node " << id;
-        std::set<std::uint64_t> captures;
-        for (const StoredMap &map : maps) {
-            EXPECT_TRUE(captures.insert(map.capture_time_us).second) << "stored twice: node " << id;
-        }
-    }
 }
 
 void expect_all_delivered(MemoryRun &run)
@@ -72,8 +51,6 @@ TEST(FaultTimeline, ACalmRunDeliversTwoMapsOfEachPair)
     EXPECT_EQ(run.maps_of(kBinocular).size(), 2u);
     EXPECT_TRUE(run.simulation.faults().notes().empty());
     EXPECT_LT(run.simulation.virtual_us(kLead, run.maps_of(kLead).front().capture_time_us), kBefore);
-    std::printf("%llu events in %.3f s\n", static_cast<unsigned long long>(run.events),
-                static_cast<double>(run.simulation.duration_us()) / 1e6);
 }
 
 TEST(FaultTimeline, TheDeathOfALeafLeavesTheRest)
@@ -113,8 +90,7 @@ TEST(FaultTimeline, ARebootWithHigherCountersDeliversAgain)
 {
     for (const std::uint16_t id : {kGateway, kRelay, kLead, kWing, kBinocular}) {
         SCOPED_TRACE("node " + std::to_string(id));
-        MemoryRun run(
-            with({.at_us = kBefore, .kind = SiteFaultKind::reboot, .node = id, .counter_start = kHigher}));
+        MemoryRun run(with({.at_us = kBefore, .kind = SiteFaultKind::reboot, .node = id, .counter_start = kHigher}));
         run.run();
         expect_all_delivered(run);
         EXPECT_EQ(run.node(id).lives(), 2u);
@@ -156,7 +132,8 @@ TEST(FaultTimeline, ANodeIsOffUntilTheLastBrownOutEnds)
 {
     Site site = short_site();
     const auto add = [&](std::uint64_t at_us, std::uint64_t for_us, SiteFaultKind kind) {
-        site.faults.push_back({.at_us = at_us, .for_us = for_us, .kind = kind, .node = kBinocular, .counter_start = kHigher});
+        site.faults.push_back(
+            {.at_us = at_us, .for_us = for_us, .kind = kind, .node = kBinocular, .counter_start = kHigher});
     };
     add(500'000, 2 * kSecond, SiteFaultKind::brown_out);
     add(600'000, 100'000, SiteFaultKind::brown_out); /* within the first */
@@ -179,7 +156,8 @@ TEST(FaultTimeline, ADriftMovesTheClockOfItsNodeAlone)
     for (const int ppm : {-1000, 1000}) {
         SCOPED_TRACE(ppm);
         Site site = with({.at_us = 0, .kind = SiteFaultKind::clock_drift, .node = kLead, .ppm = ppm});
-        site.faults.push_back({.at_us = 0, .for_us = 500'000, .kind = SiteFaultKind::clock_drift, .node = kWing, .ppm = -ppm});
+        site.faults.push_back(
+            {.at_us = 0, .for_us = 500'000, .kind = SiteFaultKind::clock_drift, .node = kWing, .ppm = -ppm});
         MemoryRun run(site);
         run.run();
         expect_all_delivered(run);
@@ -210,7 +188,8 @@ TEST(FaultTimeline, ALinkThatIsCutForAWhileDeliversAfterwards)
 
 TEST(FaultTimeline, ALinkThatLosesHalfIsRepaired)
 {
-    MemoryRun run(with({.at_us = 0, .kind = SiteFaultKind::link_loss, .node = kRelay, .other = kGateway, .frame_loss = 0.5}));
+    MemoryRun run(
+        with({.at_us = 0, .kind = SiteFaultKind::link_loss, .node = kRelay, .other = kGateway, .frame_loss = 0.5}));
     run.run();
     expect_all_delivered(run);
     EXPECT_GT(run.node(kRelay).mac_counters().retries, 3u);
@@ -220,7 +199,8 @@ TEST(FaultTimeline, ACameraThatFailsForAWhileIsTriedAgain)
 {
     for (const std::uint16_t id : {kLead, kWing, kBinocular}) {
         SCOPED_TRACE("node " + std::to_string(id));
-        MemoryRun run(with({.at_us = kBefore, .for_us = 2 * kSecond, .kind = SiteFaultKind::camera_failure, .node = id}));
+        MemoryRun run(
+            with({.at_us = kBefore, .for_us = 2 * kSecond, .kind = SiteFaultKind::camera_failure, .node = id}));
         run.run();
         expect_all_delivered(run);
         EXPECT_GT(run.node(id == kWing ? kLead : id).counters().captures_failed, 0u);
@@ -230,7 +210,8 @@ TEST(FaultTimeline, ACameraThatFailsForAWhileIsTriedAgain)
 TEST(FaultTimeline, TheGatewayRestarts)
 {
     for (const std::uint64_t for_us : {std::uint64_t{0}, 2 * kSecond}) {
-        MemoryRun run(with({.at_us = kBefore, .for_us = for_us, .kind = SiteFaultKind::gateway_restart, .counter_start = kHigher}));
+        MemoryRun run(with(
+            {.at_us = kBefore, .for_us = for_us, .kind = SiteFaultKind::gateway_restart, .counter_start = kHigher}));
         run.run();
         expect_all_delivered(run);
         EXPECT_EQ(run.node(kGateway).lives(), 2u);
@@ -260,13 +241,18 @@ std::string bytes_on_air(const MemoryRun &run)
 TEST(FaultTimeline, TheSameSeedGivesTheSameRun)
 {
     Site site = short_site();
-    site.faults = {{.at_us = 150'000, .kind = SiteFaultKind::clock_drift, .node = kLead, .ppm = 100},
-                   {.at_us = 300'000, .kind = SiteFaultKind::reboot, .node = kRelay, .counter_start = kHigher},
-                   {.at_us = 600'000, .for_us = 200'000, .kind = SiteFaultKind::link_loss, .node = kRelay, .frame_loss = 0.3},
-                   {.at_us = 1'010'000, .for_us = 50'000, .kind = SiteFaultKind::brown_out, .node = kWing, .counter_start = kHigher},
-                   {.at_us = 1'100'000, .for_us = 300'000, .kind = SiteFaultKind::camera_failure, .node = kBinocular},
-                   {.at_us = 1'200'000, .kind = SiteFaultKind::gateway_restart, .counter_start = kHigher},
-                   {.at_us = 1'250'000, .kind = SiteFaultKind::sink_restart}};
+    site.faults = {
+        {.at_us = 150'000, .kind = SiteFaultKind::clock_drift, .node = kLead, .ppm = 100},
+        {.at_us = 300'000, .kind = SiteFaultKind::reboot, .node = kRelay, .counter_start = kHigher},
+        {.at_us = 600'000, .for_us = 200'000, .kind = SiteFaultKind::link_loss, .node = kRelay, .frame_loss = 0.3},
+        {.at_us = 1'010'000,
+         .for_us = 50'000,
+         .kind = SiteFaultKind::brown_out,
+         .node = kWing,
+         .counter_start = kHigher},
+        {.at_us = 1'100'000, .for_us = 300'000, .kind = SiteFaultKind::camera_failure, .node = kBinocular},
+        {.at_us = 1'200'000, .kind = SiteFaultKind::gateway_restart, .counter_start = kHigher},
+        {.at_us = 1'250'000, .kind = SiteFaultKind::sink_restart}};
     MemoryRun first(site), second(site), other(site, 2);
     for (MemoryRun *run : {&first, &second, &other}) {
         run->run();
@@ -275,90 +261,6 @@ TEST(FaultTimeline, TheSameSeedGivesTheSameRun)
     EXPECT_EQ(first.events, second.events);
     EXPECT_EQ(bytes_on_air(first), bytes_on_air(second));
     EXPECT_NE(bytes_on_air(first), bytes_on_air(other));
-}
-
-/* ------------------------------------------------ power lost at every event */
-
-struct Strike {
-    SiteFaultKind kind;
-    std::uint16_t node;
-    std::uint64_t event;
-};
-
-bool all_tests()
-{
-    const char *all = std::getenv("TSR_TEST_ALL");
-    return all != nullptr && std::string(all) == "1";
-}
-
-bool is_below(const Site &site, std::uint16_t id, std::uint16_t ancestor)
-{
-    for (const SiteNode *node = site.node(id); node != nullptr; node = site.node(node->parent)) {
-        if (node->id == ancestor) {
-            return true;
-        }
-    }
-    return false;
-}
-
-void check(const Strike &strike)
-{
-    SCOPED_TRACE("replay: TSR_FAULT=" + std::string(fault_name(strike.kind)) + ":" + std::to_string(strike.node) + ":" +
-                 std::to_string(strike.event));
-    const bool death = strike.kind == SiteFaultKind::death;
-    MemoryRun run(short_site());
-    SiteFault fault{.kind = strike.kind, .node = strike.node, .counter_start = kHigher};
-    run.run(death ? 5 * kSecond : 60 * kSecond, strike.event, fault);
-    expect_kept(run);
-    for (const std::uint16_t id : {kLead, kBinocular}) {
-        const bool cut_off = death && (is_below(run.site, id, strike.node) || (id == kLead && strike.node == kWing));
-        EXPECT_TRUE(cut_off || run.is_up_to_date(id)) << "node " << id << " is not heard any more";
-    }
-    EXPECT_TRUE(death || run.simulation.quiet());
-}
-
-std::uint64_t calm_events()
-{
-    MemoryRun run(short_site());
-    run.run();
-    return run.events;
-}
-
-class PowerLost : public testing::TestWithParam<SiteFaultKind>
-{
-};
-
-TEST_P(PowerLost, AtEveryEvent)
-{
-    if (std::getenv("TSR_FAULT") != nullptr) {
-        GTEST_SKIP() << "TSR_FAULT is set";
-    }
-    const std::uint64_t events = calm_events(), stride = all_tests() ? 1 : 7;
-    std::uint64_t runs = 0;
-    for (std::uint16_t id = kGateway; id <= kBinocular; ++id) {
-        /* Another phase for each node: together they meet more events than one alone. */
-        for (std::uint64_t event = id % stride; event < events && !HasFailure(); event += stride, ++runs) {
-            check({GetParam(), id, event});
-        }
-    }
-    std::printf("%s: %llu runs, %llu events in one\n", std::string(fault_name(GetParam())).c_str(),
-                static_cast<unsigned long long>(runs), static_cast<unsigned long long>(events));
-}
-
-INSTANTIATE_TEST_SUITE_P(Faults, PowerLost, testing::Values(SiteFaultKind::reboot, SiteFaultKind::death),
-                         [](const auto &info) { return std::string(fault_name(info.param)); });
-
-TEST(FaultTimeline, Replay)
-{
-    const char *text = std::getenv("TSR_FAULT");
-    if (text == nullptr) {
-        GTEST_SKIP() << "TSR_FAULT is not set";
-    }
-    unsigned node = 0;
-    unsigned long long event = 0;
-    char kind[16] = "";
-    ASSERT_EQ(std::sscanf(text, "%15[^:]:%u:%llu", kind, &node, &event), 3);
-    check({std::string(kind) == "death" ? SiteFaultKind::death : SiteFaultKind::reboot, static_cast<std::uint16_t>(node), event});
 }
 
 } // namespace

@@ -10,9 +10,14 @@
 #ifndef TSR_TEST_MEMORY_RUN_H
 #define TSR_TEST_MEMORY_RUN_H
 
+#include <algorithm>
 #include <memory>
 #include <optional>
+#include <set>
+#include <utility>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "test_host_site.h"
 #include "tiny_site_parts.h"
@@ -26,6 +31,11 @@ extern "C" {
 namespace tsr::test
 {
 
+inline constexpr std::uint16_t kGateway = 1;
+inline constexpr std::uint16_t kRelay = 2;
+inline constexpr std::uint16_t kLead = 3;
+inline constexpr std::uint16_t kWing = 4;
+inline constexpr std::uint16_t kBinocular = 5;
 inline constexpr std::uint32_t kPeriodMs = 100;
 inline constexpr std::uint64_t kSceneChangeUs = 1'000'000; /* after the first maps */
 inline constexpr std::uint64_t kSceneEndUs = 1'200'000;
@@ -46,7 +56,7 @@ inline Site short_site(bool flat = false)
 class TinyPictures : public Pictures
 {
   public:
-    explicit TinyPictures(const Site &site) : site_(site) {}
+    TinyPictures(const Site &site, std::uint64_t end_us) : site_(site), end_us_(end_us) {}
 
     std::unique_ptr<FrameSource> source(const SiteNode &node, bool right) override
     {
@@ -56,7 +66,7 @@ class TinyPictures : public Pictures
         }
         return std::make_unique<Source>(ImageSize{pair->width, pair->height}, right || node.role == Role::wing);
     }
-    std::uint64_t end_us() const override { return kSceneEndUs; }
+    std::uint64_t end_us() const override { return end_us_; }
     std::optional<PairTruth> truth(const SitePair &, std::uint64_t) override { return std::nullopt; }
 
   private:
@@ -69,7 +79,8 @@ class TinyPictures : public Pictures
         {
             for (unsigned y = 0; y < image.height; ++y) {
                 for (unsigned x = 0; x < image.width; ++x) {
-                    image.pixels[y * image.stride + x] = TinyScene::pixel(right_, x, y, time_us < kSceneChangeUs ? 0 : 1);
+                    image.pixels[y * image.stride + x] =
+                        TinyScene::pixel(right_, x, y, time_us < kSceneChangeUs ? 0 : 1);
                 }
             }
         }
@@ -80,6 +91,7 @@ class TinyPictures : public Pictures
     };
 
     const Site &site_;
+    std::uint64_t end_us_;
 };
 
 class MemorySink : public SinkLink
@@ -155,9 +167,9 @@ class MemorySink : public SinkLink
 class MemoryRun
 {
   public:
-    explicit MemoryRun(Site with, std::uint64_t seed = 1)
-        : site(seeded(std::move(with), seed)), keys(derive_test_keys(7, site)), pictures(site), sink(site, keys),
-          simulation(site, keys, pictures, sink)
+    explicit MemoryRun(Site with, std::uint64_t seed = 1, std::uint64_t end_us = kSceneEndUs)
+        : site(seeded(std::move(with), seed)), keys(derive_test_keys(7, site)), pictures(site, end_us),
+          sink(site, keys), simulation(site, keys, pictures, sink)
     {
     }
 
@@ -208,6 +220,20 @@ class MemoryRun
         return site;
     }
 };
+
+/* Nothing that a node counts as acknowledged is lost, and nothing is stored twice. */
+inline void expect_kept(MemoryRun &run, std::uint16_t but_for = kNodeNone)
+{
+    for (const std::uint16_t id : {kLead, kBinocular}) {
+        const auto maps = run.maps_of(id);
+        EXPECT_TRUE(id == but_for || run.node(id).counters().maps_sent <= maps.size())
+            << "acknowledged but not stored: node " << id;
+        std::set<std::uint64_t> captures;
+        for (const StoredMap &map : maps) {
+            EXPECT_TRUE(captures.insert(map.capture_time_us).second) << "stored twice: node " << id;
+        }
+    }
+}
 
 } // namespace tsr::test
 

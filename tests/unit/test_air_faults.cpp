@@ -15,13 +15,15 @@ constexpr std::uint64_t kSenseUs = TSR_RADIO_CCA_US + TSR_RADIO_TURNAROUND_US;
 constexpr std::uint64_t kFrameUs = (TSR_RADIO_PHY_HEADER_OCTETS + kLen) * TSR_RADIO_OCTET_US;
 constexpr std::uint64_t kAckUs = TSR_RADIO_TURNAROUND_US + (TSR_RADIO_PHY_HEADER_OCTETS + 5) * TSR_RADIO_OCTET_US;
 
-/* Three radios 10 m apart, radio i with address i + 1; the first sends to the second and asks for an acknowledgement. */
+/* Three radios 10 m apart, radio i with address i + 1; the first sends to the second and asks for an acknowledgement.
+ */
 class AirFaults : public testing::Test
 {
   protected:
     AirFaults()
-        : air(AirModel{}, {[this] { return queue.now_us(); },
-                           [this](std::uint64_t at_us, std::function<void()> action) { queue.at(at_us, std::move(action)); }})
+        : air(AirModel{},
+              {[this] { return queue.now_us(); },
+               [this](std::uint64_t at_us, std::function<void()> action) { queue.at(at_us, std::move(action)); }})
     {
         for (std::size_t i = 0; i < 3; ++i) {
             air.add_radio({10.0 * static_cast<double>(i), 0, 0}, [this, i](const tsr_radio_event &event) {
@@ -67,7 +69,8 @@ class AirFaults : public testing::Test
 
 TEST_F(AirFaults, ALostSenderIsHeardByNobodyAndToldNothing)
 {
-    for (const std::uint64_t after_us : {std::uint64_t{1}, std::uint64_t{TSR_RADIO_CCA_US} + 1, kSenseUs + 1, kSenseUs + kFrameUs - 1}) {
+    for (const std::uint64_t after_us :
+         {std::uint64_t{1}, std::uint64_t{TSR_RADIO_CCA_US} + 1, kSenseUs + 1, kSenseUs + kFrameUs - 1}) {
         const std::uint64_t start_us = queue.now_us();
         send();
         run_until(start_us + after_us);

@@ -47,11 +47,12 @@ std::string fault(const std::string &fields)
 
 TEST(HostFault, ReadsEveryKind)
 {
-    const Site site = read(fault("kind = \"death\"\nnode = 2") + fault("kind = \"reboot\"\nnode = 3\ncounter_start = 4000000000") +
-                           fault("kind = \"brown-out\"\nnode = 4\nfor_s = 0.5") + fault("kind = \"clock drift\"\nnode = 5\nppm = -40") +
-                           fault("kind = \"link loss\"\nnode = 3\nother = 4\nloss_db = 12.5\nfor_s = 3") +
-                           fault("kind = \"camera failure\"\nnode = 4\nfor_s = 2") + fault("kind = \"gateway restart\"") +
-                           "[[fault]]\nat_s = 0.000001\nkind = \"sink restart\"\n");
+    const Site site = read(
+        fault("kind = \"death\"\nnode = 2") + fault("kind = \"reboot\"\nnode = 3\ncounter_start = 4000000000") +
+        fault("kind = \"brown-out\"\nnode = 4\nfor_s = 0.5") + fault("kind = \"clock drift\"\nnode = 5\nppm = -40") +
+        fault("kind = \"link loss\"\nnode = 3\nother = 4\nloss_db = 12.5\nfor_s = 3") +
+        fault("kind = \"camera failure\"\nnode = 4\nfor_s = 2") + fault("kind = \"gateway restart\"") +
+        "[[fault]]\nat_s = 0.000001\nkind = \"sink restart\"\n");
     ASSERT_EQ(site.faults.size(), 8u);
     EXPECT_EQ(site.faults[0].kind, SiteFaultKind::death);
     EXPECT_EQ(site.faults[0].node, 2);
@@ -73,8 +74,9 @@ TEST(HostFault, ReadsEveryKind)
 
 TEST(HostFault, ALinkIsCutUnlessTheFileSaysLess)
 {
-    const Site site = read(fault("kind = \"link loss\"\nnode = 3") + fault("kind = \"link loss\"\nnode = 3\nframe_loss = 0.25") +
-                           fault("kind = \"link loss\"\nnode = 3\nframe_loss = 0.25\nloss_db = 6"));
+    const Site site =
+        read(fault("kind = \"link loss\"\nnode = 3") + fault("kind = \"link loss\"\nnode = 3\nframe_loss = 0.25") +
+             fault("kind = \"link loss\"\nnode = 3\nframe_loss = 0.25\nloss_db = 6"));
     EXPECT_EQ(site.faults[0].loss_db, kLinkLossDbMax);
     EXPECT_EQ(site.faults[0].frame_loss, 0.0);
     EXPECT_EQ(site.faults[0].other, kNodeNone);
@@ -116,49 +118,68 @@ TEST(HostFault, WritesWhatItReads)
 
 TEST(HostFault, RefusesNumbersAndNames)
 {
-    EXPECT_EQ(refusal_of("[[fault]]\nat_s = -1\nkind = \"reboot\"\nnode = 2\n"), "fault 1: at_s: -1 is outside 0..31536000");
+    EXPECT_EQ(refusal_of("[[fault]]\nat_s = -1\nkind = \"reboot\"\nnode = 2\n"),
+              "fault 1: at_s: -1 is outside 0..31536000");
     EXPECT_EQ(refusal_of("[[fault]]\nkind = \"reboot\"\nnode = 2\n"), "fault 1: at_s: is missing");
     EXPECT_EQ(refusal_of("[[fault]]\nat_s = 1\nnode = 2\n"), "fault 1: kind: is missing");
-    EXPECT_EQ(refusal_of(fault("kind = \"flood\"\nnode = 2")).substr(0, 46), "fault 1: kind: 'flood' is none of death, reboo");
+    EXPECT_EQ(refusal_of(fault("kind = \"flood\"\nnode = 2")).substr(0, 46),
+              "fault 1: kind: 'flood' is none of death, reboo");
     EXPECT_EQ(refusal_of(fault("kind = \"reboot\"")), "fault 1: node: is missing");
     EXPECT_EQ(refusal_of(fault("kind = \"reboot\"\nnode = 0")), "fault 1: node: 0 is outside 1..65533");
     EXPECT_EQ(refusal_of(fault("kind = \"reboot\"\nnode = 2\ncolour = 3")), "fault 1: colour: unknown field");
-    EXPECT_EQ(refusal_of(fault("kind = \"reboot\"\nnode = 2\ncounter_start = -1")).substr(0, 34), "fault 1: counter_start: -1 is outs");
+    EXPECT_EQ(refusal_of(fault("kind = \"reboot\"\nnode = 2\ncounter_start = -1")).substr(0, 34),
+              "fault 1: counter_start: -1 is outs");
     EXPECT_EQ(refusal_of(fault("kind = \"brown-out\"\nnode = 2")), "fault 1: for_s: is missing");
-    EXPECT_EQ(refusal_of(fault("kind = \"brown-out\"\nnode = 2\nfor_s = 0")).substr(0, 33), "fault 1: for_s: is not above 0; a");
-    EXPECT_EQ(refusal_of(fault("kind = \"brown-out\"\nnode = 2\nfor_s = nan")).substr(0, 27), "fault 1: for_s: nan is outs");
-    EXPECT_EQ(refusal_of(fault("kind = \"camera failure\"\nnode = 3\nfor_s = -2")).substr(0, 26), "fault 1: for_s: -2 is outs");
+    EXPECT_EQ(refusal_of(fault("kind = \"brown-out\"\nnode = 2\nfor_s = 0")).substr(0, 33),
+              "fault 1: for_s: is not above 0; a");
+    EXPECT_EQ(refusal_of(fault("kind = \"brown-out\"\nnode = 2\nfor_s = nan")).substr(0, 27),
+              "fault 1: for_s: nan is outs");
+    EXPECT_EQ(refusal_of(fault("kind = \"camera failure\"\nnode = 3\nfor_s = -2")).substr(0, 26),
+              "fault 1: for_s: -2 is outs");
     EXPECT_EQ(refusal_of(fault("kind = \"clock drift\"\nnode = 2")), "fault 1: ppm: is missing");
     EXPECT_EQ(refusal_of(fault("kind = \"clock drift\"\nnode = 2\nppm = 0")), "fault 1: ppm: 0 is no drift");
-    EXPECT_EQ(refusal_of(fault("kind = \"clock drift\"\nnode = 2\nppm = 1001")), "fault 1: ppm: 1001 is outside -1000..1000");
-    EXPECT_EQ(refusal_of(fault("kind = \"link loss\"\nnode = 2\nloss_db = 201")), "fault 1: loss_db: 201 is outside 0..200");
+    EXPECT_EQ(refusal_of(fault("kind = \"clock drift\"\nnode = 2\nppm = 1001")),
+              "fault 1: ppm: 1001 is outside -1000..1000");
+    EXPECT_EQ(refusal_of(fault("kind = \"link loss\"\nnode = 2\nloss_db = 201")),
+              "fault 1: loss_db: 201 is outside 0..200");
     EXPECT_EQ(refusal_of(fault("kind = \"link loss\"\nnode = 2\nloss_db = 0")), "fault 1: loss_db: 0 loses nothing");
-    EXPECT_EQ(refusal_of(fault("kind = \"link loss\"\nnode = 2\nframe_loss = 0")), "fault 1: frame_loss: 0 loses nothing");
-    EXPECT_EQ(refusal_of(fault("kind = \"link loss\"\nnode = 2\nframe_loss = 2")), "fault 1: frame_loss: 2 is outside 0..1");
+    EXPECT_EQ(refusal_of(fault("kind = \"link loss\"\nnode = 2\nframe_loss = 0")),
+              "fault 1: frame_loss: 0 loses nothing");
+    EXPECT_EQ(refusal_of(fault("kind = \"link loss\"\nnode = 2\nframe_loss = 2")),
+              "fault 1: frame_loss: 2 is outside 0..1");
     EXPECT_NE(refusal_of("fault = 3\n").find("unknown field"), std::string::npos); /* inside of the last table */
 }
 
 TEST(HostFault, RefusesWhatDoesNotBelongToItsKind)
 {
-    EXPECT_EQ(refusal_of(fault("kind = \"sink restart\"\nnode = 2")), "fault 1: node: does not belong to a sink restart");
-    EXPECT_EQ(refusal_of(fault("kind = \"gateway restart\"\nnode = 1")), "fault 1: node: does not belong to a gateway restart");
+    EXPECT_EQ(refusal_of(fault("kind = \"sink restart\"\nnode = 2")),
+              "fault 1: node: does not belong to a sink restart");
+    EXPECT_EQ(refusal_of(fault("kind = \"gateway restart\"\nnode = 1")),
+              "fault 1: node: does not belong to a gateway restart");
     EXPECT_EQ(refusal_of(fault("kind = \"death\"\nnode = 2\nfor_s = 3")), "fault 1: for_s: does not belong to a death");
-    EXPECT_EQ(refusal_of(fault("kind = \"reboot\"\nnode = 2\nfor_s = 3")), "fault 1: for_s: does not belong to a reboot");
+    EXPECT_EQ(refusal_of(fault("kind = \"reboot\"\nnode = 2\nfor_s = 3")),
+              "fault 1: for_s: does not belong to a reboot");
     EXPECT_EQ(refusal_of(fault("kind = \"reboot\"\nnode = 2\nppm = 3")), "fault 1: ppm: does not belong to a reboot");
     EXPECT_EQ(refusal_of(fault("kind = \"death\"\nnode = 2\nother = 3")), "fault 1: other: does not belong to a death");
-    EXPECT_EQ(refusal_of(fault("kind = \"death\"\nnode = 2\nloss_db = 3")), "fault 1: loss_db: does not belong to a death");
-    EXPECT_EQ(refusal_of(fault("kind = \"death\"\nnode = 2\nframe_loss = 1")), "fault 1: frame_loss: does not belong to a death");
-    EXPECT_EQ(refusal_of(fault("kind = \"death\"\nnode = 2\ncounter_start = 1")), "fault 1: counter_start: does not belong to a death");
+    EXPECT_EQ(refusal_of(fault("kind = \"death\"\nnode = 2\nloss_db = 3")),
+              "fault 1: loss_db: does not belong to a death");
+    EXPECT_EQ(refusal_of(fault("kind = \"death\"\nnode = 2\nframe_loss = 1")),
+              "fault 1: frame_loss: does not belong to a death");
+    EXPECT_EQ(refusal_of(fault("kind = \"death\"\nnode = 2\ncounter_start = 1")),
+              "fault 1: counter_start: does not belong to a death");
 }
 
 TEST(HostFault, RefusesNodesThatCannotHaveIt)
 {
     const std::string good = fault("kind = \"reboot\"\nnode = 2");
     EXPECT_EQ(refusal_of(good + fault("kind = \"reboot\"\nnode = 9")), "fault 2: node: there is no node 9");
-    EXPECT_EQ(refusal_of(fault("kind = \"camera failure\"\nnode = 2")), "fault 1: node: node 2 is a relay without a camera");
-    EXPECT_EQ(refusal_of(fault("kind = \"camera failure\"\nnode = 1")), "fault 1: node: node 1 is a gateway without a camera");
+    EXPECT_EQ(refusal_of(fault("kind = \"camera failure\"\nnode = 2")),
+              "fault 1: node: node 2 is a relay without a camera");
+    EXPECT_EQ(refusal_of(fault("kind = \"camera failure\"\nnode = 1")),
+              "fault 1: node: node 1 is a gateway without a camera");
     EXPECT_EQ(refusal_of(fault("kind = \"link loss\"\nnode = 2\nother = 9")), "fault 1: other: there is no node 9");
-    EXPECT_EQ(refusal_of(fault("kind = \"link loss\"\nnode = 2\nother = 2")), "fault 1: other: node 2 has no link with itself");
+    EXPECT_EQ(refusal_of(fault("kind = \"link loss\"\nnode = 2\nother = 2")),
+              "fault 1: other: node 2 has no link with itself");
     EXPECT_EQ(refusal_of(fault("kind = \"death\"\nnode = 2") + good), "fault 2: at_s: node 2 is dead since fault 1");
     EXPECT_EQ(refusal_of(fault("kind = \"death\"\nnode = 1") + fault("kind = \"gateway restart\"")),
               "fault 2: at_s: node 1 is dead since fault 1");
@@ -180,19 +201,24 @@ TEST(HostFault, AScenarioHasThemToo)
 {
     const Folder folder;
     const auto staged = [&](const std::string &tables) {
-        const auto file = folder.put("scenario.toml", "name = \"t\"\nduration_s = 20\n[scene]\nkind = \"tank\"\n" + tables);
+        const auto file =
+            folder.put("scenario.toml", "name = \"t\"\nduration_s = 20\n[scene]\nkind = \"tank\"\n" + tables);
         return stage_scenario(load_scenario(file, {})).site.faults;
     };
     const auto faults = staged(fault("kind = \"camera failure\"\nnode = 1"));
     ASSERT_EQ(faults.size(), 1u);
     EXPECT_EQ(faults[0].line, 5);
-    EXPECT_NE(test::refusal([&] { staged(fault("kind = \"death\"\nnode = 99")); }).find("scenario.toml:5: fault 1: node: there is no node 99"),
+    EXPECT_NE(test::refusal([&] {
+                  staged(fault("kind = \"death\"\nnode = 99"));
+              }).find("scenario.toml:5: fault 1: node: there is no node 99"),
               std::string::npos);
-    EXPECT_NE(test::refusal([&] { staged("[[fault]]\nat_s = -3\nkind = \"death\"\nnode = 1\n"); })
-                  .find("scenario.toml:6: fault 1: at_s: -3 is outside"),
+    EXPECT_NE(test::refusal([&] {
+                  staged("[[fault]]\nat_s = -3\nkind = \"death\"\nnode = 1\n");
+              }).find("scenario.toml:6: fault 1: at_s: -3 is outside"),
               std::string::npos);
-    EXPECT_NE(test::refusal([&] { staged("[[fault]]\nat_s = 20.5\nkind = \"death\"\nnode = 1\n"); })
-                  .find("scenario.toml:5: fault 1: at_s: is after duration_s"),
+    EXPECT_NE(test::refusal([&] {
+                  staged("[[fault]]\nat_s = 20.5\nkind = \"death\"\nnode = 1\n");
+              }).find("scenario.toml:5: fault 1: at_s: is after duration_s"),
               std::string::npos);
 }
 

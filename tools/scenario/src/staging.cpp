@@ -109,8 +109,8 @@ void place_pairs(Staging &staging, const Scenario &scenario)
         place_pair(staging, scenario, placement, left_node, right_node);
         const StagedCamera &left = staging.cameras[staging.cameras.size() - 2], &right = staging.cameras.back();
         staging.site.pairs.push_back(site_pair(scenario, placement, left, right));
-        staging.site.nodes.push_back(
-            site_node(scenario, left, two_boards ? Role::lead : Role::binocular, placement.name + (two_boards ? " lead" : "")));
+        staging.site.nodes.push_back(site_node(scenario, left, two_boards ? Role::lead : Role::binocular,
+                                               placement.name + (two_boards ? " lead" : "")));
         if (two_boards) {
             staging.site.nodes.push_back(site_node(scenario, right, Role::wing, placement.name + " wing"));
             staging.site.nodes.back().parent = left_node;

@@ -75,7 +75,7 @@ class EmulatedNode
     std::uint16_t id() const { return site_node_.id; }
     const SiteNode &site_node() const { return site_node_; }
     tsr_node_phase phase() const;
-    bool at_rest() const; /* idle or watching, nothing under way in MAC or sender; or off */
+    bool at_rest() const; /* idle or watching, no map owed, nothing under way in MAC or sender; or off */
     /* Of all lives. */
     tsr_node_counters counters() const;
     tsr_mac_counters mac_counters() const;

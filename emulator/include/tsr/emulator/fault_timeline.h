@@ -27,7 +27,7 @@ namespace tsr
 /* A fault that came. */
 struct FaultNote {
     std::uint64_t time_us = 0;
-    SiteFault fault;            /* node: the gateway, of a gateway restart */
+    SiteFault fault;             /* node: the gateway, of a gateway restart */
     bool without_effect = false; /* a node without power cannot reboot */
 };
 

@@ -85,7 +85,7 @@ class Air
     void set_judge(Judge judge) { judge_ = std::move(judge); }
     /*
      * Without power a radio is deaf and forgets its configuration; what it sends is cut: nobody gets it, the tap does
-     * not see it, and no TX_DONE comes. With power it sleeps until it is configured anew.
+     * not see it, and no TX_DONE comes. With power it sleeps until it is configured anew. Not from an event handler.
      */
     void set_power(std::size_t index, bool on);
     /* Frames that begin while a loss is there suffer it; losses of one link add up. */
