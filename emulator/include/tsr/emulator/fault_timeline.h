@@ -42,7 +42,7 @@ class FaultTimeline
         EmulatedNode &gateway;
     };
 
-    explicit FaultTimeline(World world) : world_(world) {}
+    explicit FaultTimeline(const World &world) : world_(world) {}
 
     /* All of a site, before time runs. */
     void schedule(const std::vector<SiteFault> &faults);
