@@ -26,6 +26,7 @@
 #include "tsr/emulator/report.h"
 #include "tsr/emulator/scene_pictures.h"
 #include "tsr/emulator/simulation.h"
+#include "tsr/emulator/sink_process.h"
 #include "tsr/host/atomic_file.h"
 #include "tsr/host/command_line.h"
 #include "tsr/host/input_error.h"
@@ -209,7 +210,7 @@ int run_site(const Options &options, const tsr::Site &site, const tsr::KeyRing &
     sink.finish();
 
     simulation.capture().write(out.file("capture.pcapng"));
-    const auto maps = tsr::read_received_maps(site, pictures, out.path());
+    const auto maps = tsr::read_received_maps(site, simulation, pictures, out.path());
     const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const auto summary = tsr::make_summary(site, simulation, maps, sink.restarts(), wall_s);
     tsr::write_page(out.path(), summary, simulation, maps);

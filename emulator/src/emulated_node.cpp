@@ -6,6 +6,8 @@
 #include "tsr/emulator/emulated_node.h"
 
 #include <algorithm>
+#include <bit>
+#include <functional>
 #include <utility>
 
 extern "C" {
@@ -27,16 +29,61 @@ const tsr_entropy_ops *entropy_ops(void (*fill)(void *, std::uint8_t *, std::siz
     return &ops;
 }
 
+constexpr std::uint64_t kUnknownRam = 0xa5a5a5a5a5a5a5a5u; /* what RAM holds at power-on is anything */
+
+/* Counters are 32-bit fields and nothing else, so they add up as words. */
+template <typename Counters> Counters sum(const Counters &a, const Counters &b)
+{
+    static_assert(sizeof(Counters) % sizeof(std::uint32_t) == 0);
+    using Words = std::array<std::uint32_t, sizeof(Counters) / sizeof(std::uint32_t)>;
+    auto words = std::bit_cast<Words>(a);
+    const auto others = std::bit_cast<Words>(b);
+    std::transform(words.begin(), words.end(), others.begin(), words.begin(), std::plus<>());
+    return std::bit_cast<Counters>(words);
+}
+
+/* A camera counts by its node's clock; what it sees happens in virtual time. */
+class ClockedSource : public FrameSource
+{
+  public:
+    ClockedSource(std::unique_ptr<FrameSource> source, const NodeClock &clock)
+        : source_(std::move(source)), clock_(clock)
+    {
+    }
+
+    ImageSize size() const override { return source_->size(); }
+    void show(std::uint64_t time_us, const tsr_gray &image) override
+    {
+        source_->show(clock_.virtual_us(time_us), image);
+    }
+
+  private:
+    std::unique_ptr<FrameSource> source_;
+    const NodeClock &clock_;
+};
+
 } // namespace
+
+template <typename Action> void EmulatedNode::at(std::uint64_t time_us, Action action)
+{
+    around_.queue.at(clock_.virtual_us(time_us), [this, life = lives_, action = std::move(action)] {
+        if (powered() && lives_ == life) {
+            action();
+        }
+    });
+}
 
 EmulatedNode::EmulatedNode(const Site &site, const SiteNode &node, const KeyRing &keys, Surroundings surroundings)
     : site_node_(node), site_(site), around_(std::move(surroundings)), setup_(set_up_node(site, node, keys)),
       random_(around_.seed * 0x9e3779b97f4a7c15u + node.id)
 {
-    radio_ = around_.air.add_radio(node.position_m, [this](const tsr_radio_event &event) {
-        tsr_node_on_radio(node_.get(), &event, around_.queue.now_us());
-        serve_mac();
-        schedule_step(around_.queue.now_us());
+    tsr_memory_plan plan{};
+    tsr_node_plan_memory(&setup_->config, &plan);
+    arena_words_ = (plan.total + sizeof(arena_[0]) - 1) / sizeof(arena_[0]);
+    radio_ = around_.air.add_radio(node.position_m, [this](tsr_radio_event event) {
+        event.time_us = clock_.local_us(event.time_us);
+        tsr_node_on_radio(node_.get(), &event, local_us());
+        attend();
     });
     add_camera(false);
     add_camera(true);
@@ -51,23 +98,24 @@ void EmulatedNode::add_camera(bool right)
         return;
     }
     SourceCamera::Owner owner;
-    owner.now_us = [this] { return around_.queue.now_us(); };
+    owner.now_us = [this] { return local_us(); };
     owner.finish_at = [this, right](std::uint64_t time_us) {
-        around_.queue.at(time_us, [this, right] { (right ? right_ : left_)->finish(); });
+        at(time_us, [this, right] { (right ? right_ : left_)->finish(); });
     };
     owner.done = [this, right](tsr_status status, std::uint64_t time_us) {
         tsr_node_on_camera(node_.get(), right, status, time_us);
-        schedule_step(around_.queue.now_us());
+        attend();
     };
-    (right ? right_ : left_) = std::make_unique<SourceCamera>(std::move(source), std::move(owner));
+    (right ? right_ : left_) =
+        std::make_unique<SourceCamera>(std::make_unique<ClockedSource>(std::move(source), clock_), std::move(owner));
 }
 
-void EmulatedNode::start()
+void EmulatedNode::power_on(std::uint32_t counter_start)
 {
+    ++lives_;
     node_ = std::make_unique<tsr_node>();
-    tsr_memory_plan plan{};
-    tsr_node_plan_memory(&setup_->config, &plan);
-    arena_.assign((plan.total + sizeof(arena_[0]) - 1) / sizeof(arena_[0]), 0);
+    arena_.assign(arena_words_, kUnknownRam);
+    around_.air.set_power(radio_, true);
     tsr_node_hal hal{};
     hal.aes = &mbedtls_aes_ops();
     hal.radio = around_.air.radio(radio_);
@@ -75,15 +123,64 @@ void EmulatedNode::start()
     hal.left = left_ ? left_->camera() : tsr_camera{};
     hal.right = right_ ? right_->camera() : tsr_camera{};
     hal.port = around_.port;
-    const std::uint64_t now_us = around_.queue.now_us();
-    const tsr_status status = tsr_node_init(node_.get(), &setup_->config, &hal,
-                                            reinterpret_cast<std::uint8_t *>(arena_.data()), arena_len(), now_us);
+    tsr_node_config config = setup_->config;
+    config.counter_start = counter_start != 0 ? counter_start : config.counter_start;
+    const tsr_status status = tsr_node_init(node_.get(), &config, &hal, reinterpret_cast<std::uint8_t *>(arena_.data()),
+                                            arena_len(), local_us());
     if (status != TSR_OK) {
         throw InputError(site_.file.string(), site_node_.name,
                          std::string("does not start: ") + tsr_status_name(status));
     }
+    attend();
+}
+
+void EmulatedNode::power_off()
+{
+    if (!powered()) {
+        return;
+    }
+    past_counters_ = counters();
+    past_mac_counters_ = mac_counters();
+    past_sender_counters_ = sender_counters();
+    const std::uint64_t now_us = around_.queue.now_us();
+    cpu_busy_us_ -= busy_until_us_ > now_us ? busy_until_us_ - now_us : 0; /* the rest of a step is not done */
+    busy_until_us_ = 0;
+    step_at_us_ = timer_at_us_ = UINT64_MAX;
+    around_.air.set_power(radio_, false);
+    for (SourceCamera *camera : {left_.get(), right_.get()}) {
+        if (camera != nullptr) {
+            camera->abort();
+        }
+    }
+    node_.reset();
+    arena_ = {};
+    note_phase(TSR_PHASE_IDLE);
+}
+
+/* What is scheduled was converted at the old rate: the node looks at its clock anew. */
+void EmulatedNode::set_drift(int ppm)
+{
+    clock_.set_rate(around_.queue.now_us(), ppm);
+    if (powered()) {
+        step_at_us_ = timer_at_us_ = UINT64_MAX;
+        attend();
+    }
+}
+
+void EmulatedNode::set_camera_failing(bool failing)
+{
+    for (SourceCamera *camera : {left_.get(), right_.get()}) {
+        if (camera != nullptr) {
+            camera->set_failing(failing);
+        }
+    }
+}
+
+/* After an interrupt. */
+void EmulatedNode::attend()
+{
     serve_mac();
-    schedule_step(now_us);
+    schedule_step(local_us());
 }
 
 /* xorshift64* (Vigna, ACM TOMS 42(4), 2016): back-off only. */
@@ -100,22 +197,23 @@ void EmulatedNode::fill_entropy(void *self, std::uint8_t *bytes, std::size_t len
 
 void EmulatedNode::receive_from_port(const std::uint8_t *bytes, std::size_t len)
 {
-    tsr_node_on_port(node_.get(), bytes, len, around_.queue.now_us());
-    serve_mac();
-    schedule_step(around_.queue.now_us());
+    if (powered()) {
+        tsr_node_on_port(node_.get(), bytes, len, local_us());
+        attend();
+    }
 }
 
 /* Interrupt context: the MAC's timer runs even while the processor computes. */
 void EmulatedNode::serve_mac()
 {
-    tsr_node_on_timer(node_.get(), around_.queue.now_us());
+    tsr_node_on_timer(node_.get(), local_us());
     const std::uint64_t timer_us = tsr_node_timer_us(node_.get());
     if (timer_us == timer_at_us_ || timer_us == UINT64_MAX) {
         timer_at_us_ = timer_us;
         return;
     }
     timer_at_us_ = timer_us;
-    around_.queue.at(timer_us, [this, timer_us] {
+    at(timer_us, [this, timer_us] {
         if (timer_at_us_ == timer_us) {
             timer_at_us_ = UINT64_MAX;
             serve_mac();
@@ -125,12 +223,12 @@ void EmulatedNode::serve_mac()
 
 void EmulatedNode::schedule_step(std::uint64_t time_us)
 {
-    time_us = std::max(time_us, busy_until_us_);
+    time_us = std::max(time_us, clock_.local_us(std::max(busy_until_us_, around_.queue.now_us())));
     if (time_us >= step_at_us_) {
         return;
     }
     step_at_us_ = time_us;
-    around_.queue.at(time_us, [this, time_us] {
+    at(time_us, [this, time_us] {
         if (step_at_us_ == time_us) {
             step_at_us_ = UINT64_MAX;
             step();
@@ -141,8 +239,8 @@ void EmulatedNode::schedule_step(std::uint64_t time_us)
 void EmulatedNode::step()
 {
     const std::uint64_t now_us = around_.queue.now_us();
-    const tsr_node_outcome outcome = tsr_node_step(node_.get(), now_us);
-    note_phase();
+    const tsr_node_outcome outcome = tsr_node_step(node_.get(), local_us());
+    note_phase(tsr_node_get_phase(node_.get()));
     if (outcome.work != TSR_WORK_NONE) {
         const std::uint64_t took_us = work_time_us(around_.power, outcome.work, outcome.units);
         work_units_.at(outcome.work) += outcome.units;
@@ -155,9 +253,8 @@ void EmulatedNode::step()
     }
 }
 
-void EmulatedNode::note_phase()
+void EmulatedNode::note_phase(tsr_node_phase phase)
 {
-    const tsr_node_phase phase = tsr_node_get_phase(node_.get());
     if (phase != phase_) {
         phase_ = phase;
         if (around_.phase_changed) {
@@ -166,36 +263,42 @@ void EmulatedNode::note_phase()
     }
 }
 
-tsr_node_phase EmulatedNode::phase() const
-{
-    return tsr_node_get_phase(node_.get());
-}
-
 bool EmulatedNode::at_rest() const
 {
-    return tsr_node_get_phase(node_.get()) <= TSR_PHASE_WATCHING && tsr_node_is_quiet(node_.get());
+    if (!powered()) {
+        return true;
+    }
+    /* What a lost capture, view or map has shown is still owed: the next frame is captured again. */
+    const bool owes_map =
+        node_->recapture && (node_->config.role == TSR_ROLE_LEAD || node_->config.role == TSR_ROLE_BINOCULAR);
+    return phase() <= TSR_PHASE_WATCHING && !owes_map && tsr_node_is_quiet(node_.get());
 }
 
-const tsr_node_counters &EmulatedNode::counters() const
+tsr_node_phase EmulatedNode::phase() const
 {
-    return *tsr_node_get_counters(node_.get());
+    return powered() ? tsr_node_get_phase(node_.get()) : TSR_PHASE_IDLE;
 }
 
-const tsr_mac_counters &EmulatedNode::mac_counters() const
+tsr_node_counters EmulatedNode::counters() const
 {
-    return *tsr_node_get_mac_counters(node_.get());
+    return powered() ? sum(past_counters_, *tsr_node_get_counters(node_.get())) : past_counters_;
 }
 
-const tsr_sender_counters &EmulatedNode::sender_counters() const
+tsr_mac_counters EmulatedNode::mac_counters() const
 {
-    return *tsr_node_get_sender_counters(node_.get());
+    return powered() ? sum(past_mac_counters_, *tsr_node_get_mac_counters(node_.get())) : past_mac_counters_;
+}
+
+tsr_sender_counters EmulatedNode::sender_counters() const
+{
+    return powered() ? sum(past_sender_counters_, *tsr_node_get_sender_counters(node_.get())) : past_sender_counters_;
 }
 
 EnergyMj EmulatedNode::energy() const
 {
     NodeTimes times;
-    times.total_us = around_.queue.now_us();
     times.radio = around_.air.times(radio_);
+    times.total_us = around_.queue.now_us() - times.radio.off;
     times.cpu_busy_us = cpu_busy_us_;
     for (const auto *camera : {left_.get(), right_.get()}) {
         times.cameras += camera != nullptr ? 1 : 0;

@@ -26,7 +26,8 @@ std::optional<MapError> error_of(const Site &site, Pictures &pictures, const Rec
 
 } // namespace
 
-std::vector<ReceivedMap> read_received_maps(const Site &site, Pictures &pictures, const std::filesystem::path &out)
+std::vector<ReceivedMap> read_received_maps(const Site &site, const Simulation &simulation, Pictures &pictures,
+                                            const std::filesystem::path &out)
 {
     const auto file = out / "sink.json";
     std::vector<ReceivedMap> maps;
@@ -36,7 +37,7 @@ std::vector<ReceivedMap> read_received_maps(const Site &site, Pictures &pictures
             ReceivedMap map;
             map.node = entry.at("node").get<std::uint16_t>();
             map.counter = entry.at("counter").get<std::uint32_t>();
-            map.capture_time_us = entry.at("capture_time_us").get<std::uint64_t>();
+            map.capture_time_us = simulation.virtual_us(map.node, entry.at("capture_time_us").get<std::uint64_t>());
             map.kept = entry.at("kept").get<bool>();
             map.map_bytes = entry.at("map_bytes").get<std::size_t>();
             map.reference_bytes = entry.at("reference_bytes").get<std::size_t>();

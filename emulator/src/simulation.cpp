@@ -34,7 +34,7 @@ AirModel air_model(const Site &site)
 
 const tsr_port_ops Simulation::kPortOps = {&Simulation::write_port};
 
-Simulation::Simulation(const Site &site, const KeyRing &keys, Pictures &pictures, SinkProcess &sink)
+Simulation::Simulation(const Site &site, const KeyRing &keys, Pictures &pictures, SinkLink &sink)
     : site_(site), pictures_(pictures), sink_(sink)
 {
     Air::Clock clock;
@@ -52,6 +52,7 @@ Simulation::Simulation(const Site &site, const KeyRing &keys, Pictures &pictures
             gateway_ = nodes_.back().get();
         }
     }
+    faults_ = std::make_unique<FaultTimeline>(FaultTimeline::World{queue_, *air_, sink_, nodes_, *gateway_});
     air_tallies_.resize(nodes_.size());
     air_->set_tap([this](const AirFrame &frame) {
         AirTally &tally = air_tallies_.at(frame.sender);
@@ -69,9 +70,13 @@ tsr_status Simulation::write_port(void *self, const std::uint8_t *bytes, std::si
 {
     auto &simulation = *static_cast<Simulation *>(self);
     auto answer = simulation.sink_.exchange(bytes, len);
-    simulation.queue_.at(simulation.queue_.now_us() + kSinkAnswerUs, [&simulation, answer = std::move(answer)] {
-        simulation.gateway_->receive_from_port(answer.data(), answer.size());
-    });
+    simulation.queue_.at(
+        simulation.queue_.now_us() + kSinkAnswerUs,
+        [&gateway = *simulation.gateway_, life = simulation.gateway_->lives(), answer = std::move(answer)] {
+            if (gateway.lives() == life) { /* what a port still held is lost with the power */
+                gateway.receive_from_port(answer.data(), answer.size());
+            }
+        });
     return TSR_OK;
 }
 
@@ -80,6 +85,13 @@ void Simulation::note(const PhaseChange &change)
     if (change.phase > TSR_PHASE_WATCHING || timeline_.size() < kWatchingNotedMax) {
         timeline_.push_back(change);
     }
+}
+
+std::uint64_t Simulation::virtual_us(std::uint16_t node, std::uint64_t local_us) const
+{
+    const auto found =
+        std::find_if(nodes_.begin(), nodes_.end(), [node](const auto &one) { return one->id() == node; });
+    return found == nodes_.end() ? local_us : (*found)->clock().virtual_us(local_us);
 }
 
 bool Simulation::quiet() const
@@ -92,11 +104,14 @@ void Simulation::run(const Progress &progress)
     std::uint64_t longest_period_us = 0;
     for (const auto &node : nodes_) {
         longest_period_us = std::max<std::uint64_t>(longest_period_us, node->site_node().watch_period_ms * 1000u);
-        node->start();
+        node->power_on();
     }
-    /* Every watching node sees the last frame at least once, and however short a recording is, there is a first map. */
+    faults_->schedule(site_.faults);
+    /* Every watching node sees the last frame at least once, and however short a recording is, there is a first map,
+     * also of a node that a fault has started anew. */
     const std::uint64_t played_us =
-        std::max(pictures_.end_us() + 2 * longest_period_us, kFirstMapFrames * longest_period_us);
+        std::max(pictures_.end_us() + 2 * longest_period_us,
+                 FaultTimeline::last_us(site_.faults) + kFirstMapFrames * longest_period_us);
     const std::uint64_t latest_us = played_us + kPatienceUs;
     while (!queue_.empty() && queue_.next_us() <= latest_us) {
         if (queue_.next_us() > played_us && quiet()) {

@@ -23,6 +23,10 @@
 
 #include "tsr/host/input_error.h"
 
+extern "C" {
+#include "tsr/wire/link.h"
+}
+
 extern char **environ; /* POSIX, environ(7) */
 
 namespace tsr
@@ -222,7 +226,7 @@ std::vector<std::uint8_t> SinkProcess::exchange(const std::uint8_t *frame, std::
     }
     std::vector<std::uint8_t> answer;
     while (!try_exchange(frame, len, answer)) {
-        restart();
+        recover();
     }
     failures_ = 0;
     return answer;
@@ -236,11 +240,17 @@ void SinkProcess::restart()
         reap(true);
     }
     ++restarts_;
+    start();
+}
+
+/* After a failure: only so often without an answer between. */
+void SinkProcess::recover()
+{
     if (++failures_ > kFailuresMax) {
         throw InputError(options_.program.string(), "run",
                          "does not answer; " + options_.log.string() + " may say why");
     }
-    start();
+    restart();
 }
 
 bool SinkProcess::try_finish()
@@ -264,7 +274,7 @@ bool SinkProcess::try_finish()
 void SinkProcess::finish()
 {
     while (!try_finish()) {
-        restart();
+        recover();
     }
 }
 

@@ -3,7 +3,7 @@
  *
  * SPDX-License-Identifier: Apache-2.0
  */
-#include "tsr/hal/air.h"
+#include "air_parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,42 +54,6 @@ unsigned destination_of(const std::vector<std::uint8_t> &psdu)
 
 } // namespace
 
-struct Air::Radio {
-    Radio(Air &medium, std::size_t index_in_it, EventHandler owner)
-        : air(&medium), index(index_in_it), handler(std::move(owner)), receiver(medium.receivers_)
-    {
-    }
-
-    Air *air;
-    std::size_t index;
-    EventHandler handler;
-    std::uint8_t channel = 0;
-    std::uint16_t pan_id = 0;
-    std::uint16_t address = 0;
-    bool receiving = false;
-    bool turning = false;           /* from a clear channel to the transmission: deaf */
-    bool sending = false;           /* a PSDU of its own is on air: frame or acknowledgement */
-    bool sending_ack = false;       /* it is an acknowledgement */
-    bool sent = false;              /* the frame of the transmit() under way has been on air */
-    bool busy = false;              /* between transmit() and TX_DONE */
-    std::vector<std::uint8_t> psdu; /* of the transmit() under way */
-    std::uint64_t attempt = 0;      /* counts transmit() calls */
-    air::Receiver receiver;
-    mutable AirTimes times;
-    mutable std::uint64_t accounted_us = 0;
-};
-
-struct Air::Transmission {
-    std::uint64_t number = 0;
-    std::size_t sender = 0;
-    std::uint8_t channel = 0;
-    std::uint64_t start_us = 0;
-    std::uint64_t end_us = 0;
-    std::vector<std::uint8_t> psdu;
-    Radio *acknowledges = nullptr;  /* an acknowledgement's addressee */
-    std::uint64_t frame_end_us = 0; /* of the frame it acknowledges */
-};
-
 const tsr_radio_ops Air::kOps = {&Air::configure, &Air::set_receiving, &Air::transmit};
 
 Air::Air(const AirModel &model, Clock clock)
@@ -132,7 +96,8 @@ void Air::account(Radio &radio) const
     radio.accounted_us = now_us;
     AirTimes &times = radio.times;
     /* Sensing and waiting for an acknowledgement need the receiver, whatever the MAC wants. */
-    (radio.sending_ack           ? times.acknowledging
+    (!radio.powered              ? times.off
+     : radio.sending_ack         ? times.acknowledging
      : radio.sending             ? times.transmitting
      : radio.busy && !radio.sent ? times.assessing
      : radio.busy                ? times.awaiting
@@ -193,7 +158,11 @@ tsr_status Air::transmit(void *radio, const std::uint8_t *psdu, std::size_t psdu
     if (!air.cca_at_end_) {
         self.receiver.start_cca(air.clock_.now_us());
     }
-    air.clock_.at(air.clock_.now_us() + TSR_RADIO_CCA_US, [&air, &self] { air.sense(self); });
+    air.clock_.at(air.clock_.now_us() + TSR_RADIO_CCA_US, [&air, &self, life = self.life] {
+        if (self.life == life) {
+            air.sense(self);
+        }
+    });
     return TSR_OK;
 }
 
@@ -208,7 +177,11 @@ void Air::sense(Radio &radio)
     }
     radio.turning = true;
     update_listening(radio);
-    clock_.at(clock_.now_us() + TSR_RADIO_TURNAROUND_US, [this, &radio] { send_data(radio); });
+    clock_.at(clock_.now_us() + TSR_RADIO_TURNAROUND_US, [this, &radio, life = radio.life] {
+        if (radio.life == life) {
+            send_data(radio);
+        }
+    });
 }
 
 std::shared_ptr<Air::Transmission> Air::begin(Radio &sender, std::vector<std::uint8_t> psdu)
@@ -223,8 +196,13 @@ std::shared_ptr<Air::Transmission> Air::begin(Radio &sender, std::vector<std::ui
     transmission->start_us = clock_.now_us();
     transmission->end_us = transmission->start_us + duration_us(psdu.size());
     transmission->psdu = std::move(psdu);
+    sender.on_air = transmission;
     arrive(*transmission);
-    clock_.at(transmission->end_us, [this, transmission] { end(*transmission); });
+    clock_.at(transmission->end_us, [this, transmission] {
+        if (!transmission->cut) {
+            end(*transmission);
+        }
+    });
     return transmission;
 }
 
@@ -236,7 +214,9 @@ void Air::arrive(const Transmission &transmission)
     signal.end_us = transmission.end_us;
     signal.channel = transmission.channel;
     for (const air::Link &link : neighbours_.of(transmission.sender)) {
-        signal.level_q4 = link.mean_q4 + propagation_.fading_q4(transmission.sender, link.radio, transmission.start_us);
+        signal.level_q4 = link.mean_q4 +
+                          propagation_.fading_q4(transmission.sender, link.radio, transmission.start_us) -
+                          losses_.loss_q4(transmission.sender, link.radio);
         radios_[link.radio]->receiver.begin(signal);
         ++arrivals_;
     }
@@ -267,7 +247,7 @@ void Air::send_data(Radio &radio)
     radio.sent = true;
 }
 
-void Air::send_ack(Radio &radio, Radio &to, std::uint8_t sequence, std::uint64_t frame_end_us)
+void Air::send_ack(Radio &radio, Radio &to, std::uint64_t asker_life, std::uint8_t sequence, std::uint64_t frame_end_us)
 {
     if (radio.sending) {
         return;
@@ -279,13 +259,15 @@ void Air::send_ack(Radio &radio, Radio &to, std::uint8_t sequence, std::uint64_t
     const auto ack = begin(radio, std::move(psdu));
     radio.sending_ack = true;
     ack->acknowledges = &to;
+    ack->asker_life = asker_life;
     ack->frame_end_us = frame_end_us;
 }
 
 bool Air::chance_keeps(const Transmission &transmission, std::size_t receiver, std::uint64_t success_q32) const
 {
     const std::uint64_t draw = air::mix(air::mix(seed_ + transmission.number) + receiver);
-    return (draw >> 32) < air::both_q32(success_q32, kept_q32_);
+    const std::uint64_t kept_q32 = air::both_q32(kept_q32_, losses_.kept_q32(transmission.sender, receiver));
+    return (draw >> 32) < air::both_q32(success_q32, kept_q32);
 }
 
 void Air::deliver(const Receipt &receipt, const Transmission &transmission)
@@ -305,6 +287,7 @@ void Air::end(const Transmission &transmission)
     account(sender);
     sender.sending = false;
     sender.sending_ack = false;
+    sender.on_air.reset();
     update_listening(sender);
     const std::vector<Receipt> heard = leave(transmission);
 
@@ -328,7 +311,7 @@ void Air::end_ack(const Transmission &transmission, AirFrame frame, AirFate fate
     if (tap_) {
         tap_(frame);
     }
-    if (got && to.busy) {
+    if (got && to.busy && to.life == transmission.asker_life) {
         finish(to, TSR_RADIO_ACKED, transmission.frame_end_us);
     }
 }
@@ -380,9 +363,13 @@ void Air::answer(Radio &sender, Radio *receiver, const Transmission &transmissio
 {
     const std::uint64_t end_us = transmission.end_us;
     if (receiver != nullptr) {
-        clock_.at(end_us + TSR_RADIO_TURNAROUND_US, [this, receiver, &sender, sequence = transmission.psdu[2], end_us] {
-            send_ack(*receiver, sender, sequence, end_us);
-        });
+        clock_.at(end_us + TSR_RADIO_TURNAROUND_US,
+                  [this, receiver, life = receiver->life, &sender, asker_life = sender.life,
+                   sequence = transmission.psdu[2], end_us] {
+                      if (receiver->life == life) {
+                          send_ack(*receiver, sender, asker_life, sequence, end_us);
+                      }
+                  });
     }
     clock_.at(end_us + TSR_RADIO_ACK_WAIT_US, [this, &sender, end_us, attempt = sender.attempt] {
         if (sender.busy && sender.attempt == attempt) {

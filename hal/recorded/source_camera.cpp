@@ -37,10 +37,12 @@ tsr_status SourceCamera::capture(void *self, tsr_gray image, std::uint64_t at_us
 
 void SourceCamera::finish()
 {
-    source_->show(exposure_us_, image_);
+    if (!failing_) {
+        source_->show(exposure_us_, image_);
+    }
     busy_ = false;
     ++captures_;
-    owner_.done(TSR_OK, exposure_us_);
+    owner_.done(failing_ ? TSR_ERR_IO : TSR_OK, exposure_us_);
 }
 
 } // namespace tsr

@@ -122,6 +122,10 @@ def sites(folder, scene):
              ("watch period too long", r"watch_period_ms = 1000", "watch_period_ms = 4294968", "watch_period_ms"),
              ("watched outside", r"watch_period_ms = 1000", "watch_period_ms = 1000\nwatch = [[9999, 0, 1, 1]]", "watch"),
              ("watched outside the picture", r"watch_period_ms = 1000", "watch_period_ms = 1000\nwatch = [[639, 0, 1, 1]]", "watch"),
+             ("fault in the past", r"\Z", '\n[[fault]]\nat_s = -1\nkind = "reboot"\nnode = 3\n', "fault 1: at_s: -1 is outside"),
+             ("fault of nobody", r"\Z", '\n[[fault]]\nat_s = 1\nkind = "reboot"\nnode = 99\n', "fault 1: node: there is no node 99"),
+             ("unknown kind of fault", r"\Z", '\n[[fault]]\nat_s = 1\nkind = "flood"\nnode = 3\n', "fault 1: kind: 'flood'"),
+             ("fault with an unknown field", r"\Z", '\n[[fault]]\nat_s = 1\nkind = "sink restart"\ncolor = 3\n', "fault 1: color: unknown"),
              ("a line without end", r"\[site\]", "a" + ".a" * 60000 + " = 1\n[site]", "longer"),
              ("no ground truth", r'truth = "truth160"', 'truth = "nowhere"', "nowhere"),
              ("missing recordings", r'frames = "left160"', 'frames = "nowhere"', "nowhere"))
@@ -129,6 +133,19 @@ def sites(folder, scene):
         file = with_site(scene, name.replace(" ", "_") + ".toml", pattern, replacement)
         refuse(name, [EMULATOR, file, "--out", out], mention, out=out)
     refuse("no site file", [EMULATOR, scene / "none.toml", "--out", out], "none.toml", out=out)
+
+
+def faults(folder):
+    """Of scenarios: the same tables, the same words, with the line."""
+    file = folder / "scenario.toml"
+    head = 'name = "t"\nduration_s = 20\n[scene]\nkind = "tank"\n[[fault]]\n'
+    for name, tables, mention in (("a negative time", 'at_s = -1\nkind = "death"\nnode = 1\n', "scenario.toml:6: fault 1: at_s: -1 is outside"),
+                                  ("after the end", 'at_s = 21\nkind = "death"\nnode = 1\n', "scenario.toml:5: fault 1: at_s: is after"),
+                                  ("a key of another kind", 'at_s = 1\nkind = "death"\nnode = 1\nfor_s = 2\n', "scenario.toml:9: fault 1: for_s"),
+                                  ("a gateway's camera", 'at_s = 1\nkind = "camera failure"\nnode = 8\n', "scenario.toml:5: fault 1: node: node 8"),
+                                  ("an unknown key", 'at_s = 1\nkind = "death"\nnode = 1\ntypo = 2\n', "scenario.toml:9: fault 1: typo: unknown")):
+        file.write_text(head + tables)
+        refuse(f"fault of a scenario: {name}", [EMULATOR, file, "--out", folder / "out"], mention, out=folder / "out")
 
 
 def geometry(folder, scene):
@@ -254,6 +271,7 @@ with tempfile.TemporaryDirectory() as name:
     frames(folder, scene)
     command_lines(folder, scene)
     sites(folder, scene)
+    faults(folder)
     geometry(folder, scene)
     calibrations(folder)
     keys(folder, scene)

@@ -19,6 +19,11 @@ std::string_view role_name(Role role)
     return "unknown";
 }
 
+bool has_camera(Role role)
+{
+    return role == Role::lead || role == Role::wing || role == Role::binocular;
+}
+
 const SiteNode *Site::node(std::uint16_t id) const
 {
     const auto found = std::find_if(nodes.begin(), nodes.end(), [id](const SiteNode &n) { return n.id == id; });

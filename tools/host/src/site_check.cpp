@@ -16,11 +16,6 @@ namespace
 
 constexpr std::size_t kNameMax = 64;
 
-bool is_camera(Role role)
-{
-    return role == Role::lead || role == Role::wing || role == Role::binocular;
-}
-
 std::string fault_in_name(const std::string &name)
 {
     if (name.empty() || name.size() > kNameMax) {
@@ -57,7 +52,7 @@ NodeIndex index_nodes(const Site &site)
                 refuse_node(site, node, "position_m", "is farther than 1000 km");
             }
         }
-        if (!node.frames.empty() && !is_camera(node.role)) {
+        if (!node.frames.empty() && !has_camera(node.role)) {
             refuse_node(site, node, "frames", "a " + std::string(role_name(node.role)) + " has no camera");
         }
         if (!node.frames_right.empty() && node.role != Role::binocular) {
@@ -238,7 +233,7 @@ void check_pairs(const Site &site, const NodeIndex &index)
         }
     }
     for (const SiteNode &node : site.nodes) {
-        if (is_camera(node.role) && !paired.contains(node.id)) {
+        if (has_camera(node.role) && !paired.contains(node.id)) {
             refuse_node(site, node, "role", "a " + std::string(role_name(node.role)) + " that no [[pair]] names");
         }
     }
@@ -331,6 +326,7 @@ void check_site(const Site &site)
     check_gateway(site);
     check_tree(site, index);
     check_pairs(site, index);
+    check_faults(site);
 }
 
 } // namespace tsr

@@ -23,6 +23,9 @@ namespace tsr
  * stands where the baseline says and looks the same way. Throws InputError. */
 void check_pair_geometry(const Site &site, const SitePair &pair);
 
+/* Faults of nodes that exist, can have them and live. Throws InputError. */
+void check_faults(const Site &site);
+
 } // namespace tsr
 
 #endif

@@ -188,6 +188,7 @@ Site load_site(const std::filesystem::path &file)
     for (TomlFields &fields : top.tables("pair")) {
         site.pairs.push_back(read_pair(fields));
     }
+    site.faults = read_faults(top);
     top.refuse_unknown();
     check_site(site);
     return site;

@@ -147,6 +147,30 @@ std::string pair_text(const SitePair &pair)
     return text;
 }
 
+/* What a kind does not have is left out: it would be refused. */
+std::string fault_text(const SiteFault &fault)
+{
+    std::string text = "\n[[fault]]\n";
+    text += line("at_s", number(static_cast<double>(fault.at_us) / 1e6));
+    text += line("kind", quoted(std::string(fault_name(fault.kind))));
+    if (fault.node != kNodeNone) {
+        text += line("node", std::to_string(fault.node));
+    }
+    if (fault.for_us != 0) {
+        text += line("for_s", number(static_cast<double>(fault.for_us) / 1e6));
+    }
+    if (fault.kind == SiteFaultKind::clock_drift) {
+        text += line("ppm", std::to_string(fault.ppm));
+    }
+    if (fault.other != kNodeNone) {
+        text += line("other", std::to_string(fault.other));
+    }
+    if (fault.kind == SiteFaultKind::link_loss) {
+        text += line("loss_db", number(fault.loss_db)) + line("frame_loss", number(fault.frame_loss));
+    }
+    return fault.counter_start == 0 ? text : text + line("counter_start", std::to_string(fault.counter_start));
+}
+
 } // namespace
 
 void write_site(const std::filesystem::path &file, const Site &site)
@@ -157,6 +181,9 @@ void write_site(const std::filesystem::path &file, const Site &site)
     }
     for (const SitePair &pair : site.pairs) {
         text += pair_text(pair);
+    }
+    for (const SiteFault &fault : site.faults) {
+        text += fault_text(fault);
     }
     write_file_atomically(file, text);
 }

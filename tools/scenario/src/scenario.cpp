@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "tsr/host/input_error.h"
 #include "tsr/host/site_fields.h"
 
 namespace tsr
@@ -117,6 +118,18 @@ void read_camera(TomlFields &fields, ScenarioCamera &camera)
     fields.refuse_unknown();
 }
 
+/* A recording can be played on; a scenario says itself when it ends. */
+void refuse_late_faults(const Scenario &scenario)
+{
+    for (std::size_t i = 0; i < scenario.faults.size(); ++i) {
+        const SiteFault &fault = scenario.faults[i];
+        if (static_cast<double>(fault.at_us) > scenario.scene.duration_s * 1e6) {
+            throw InputError(scenario.file.string() + ":" + std::to_string(fault.line),
+                             "fault " + std::to_string(i + 1) + ": at_s", "is after duration_s, the scenario's end");
+        }
+    }
+}
+
 template <typename Read, typename Value> void read_table(TomlFields &top, const char *name, Read read, Value &value)
 {
     if (auto fields = top.table(name)) {
@@ -152,7 +165,9 @@ Scenario load_scenario(const std::filesystem::path &file, const std::vector<std:
     read_table(top, "radio", read_radio, scenario.radio);
     read_table(top, "thresholds", read_thresholds, scenario.thresholds);
     read_table(top, "battery", read_battery, scenario.battery);
+    scenario.faults = read_faults(top);
     top.refuse_unknown();
+    refuse_late_faults(scenario);
     return scenario;
 }
 

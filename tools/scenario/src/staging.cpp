@@ -140,6 +140,7 @@ Staging stage_scenario(const Scenario &scenario)
     site.radio = scenario.radio;
     site.thresholds = scenario.thresholds;
     site.battery = scenario.battery;
+    site.faults = scenario.faults;
     place_pairs(staging, scenario);
     refuse_impossible(scenario, staging);
     join_tree(site, kReachM);

@@ -5,6 +5,10 @@
  * The processor does one step at a time and is busy for as long as the step's
  * work takes; radio interrupts are served in between, as on a board.
  *
+ * A node has a life from power-on to power-off. What a life has asked of the
+ * queue, the air or a camera ends with it. Counters of the firmware go on from
+ * one life to the next here, though the firmware forgets them.
+ *
  * SPDX-License-Identifier: Apache-2.0
  */
 #ifndef TSR_EMULATOR_EMULATED_NODE_H
@@ -19,6 +23,7 @@
 
 #include "tsr/emulator/energy.h"
 #include "tsr/emulator/event_queue.h"
+#include "tsr/emulator/node_clock.h"
 #include "tsr/emulator/node_setup.h"
 #include "tsr/emulator/pictures.h"
 #include "tsr/hal/air.h"
@@ -52,29 +57,44 @@ class EmulatedNode
     EmulatedNode(const EmulatedNode &) = delete;
     EmulatedNode &operator=(const EmulatedNode &) = delete;
 
-    /* Power on. Throws InputError if the firmware refuses to start. */
-    void start();
-    /* Bytes from the sink. */
+    /* Power on: the firmware starts with its configuration and unknown RAM. counter_start: in the place of the
+     * configuration's, if not 0. Throws InputError if the firmware refuses to start. */
+    void power_on(std::uint32_t counter_start = 0);
+    void power_off();
+    bool powered() const { return node_ != nullptr; }
+    /* Power-ons until now. */
+    std::uint64_t lives() const { return lives_; }
+    /* From now on; above 0 its clock is fast. */
+    void set_drift(int ppm);
+    const NodeClock &clock() const { return clock_; }
+    void set_camera_failing(bool failing);
+    std::size_t radio_index() const { return radio_; }
+    /* Bytes from the sink; without power they are lost. */
     void receive_from_port(const std::uint8_t *bytes, std::size_t len);
 
     std::uint16_t id() const { return site_node_.id; }
     const SiteNode &site_node() const { return site_node_; }
     tsr_node_phase phase() const;
-    bool at_rest() const; /* idle or watching, nothing under way in MAC or sender */
-    const tsr_node_counters &counters() const;
-    const tsr_mac_counters &mac_counters() const;
-    const tsr_sender_counters &sender_counters() const;
-    std::size_t arena_len() const { return arena_.size() * sizeof(arena_[0]); }
+    bool at_rest() const; /* idle or watching, no map owed, nothing under way in MAC or sender; or off */
+    /* Of all lives. */
+    tsr_node_counters counters() const;
+    tsr_mac_counters mac_counters() const;
+    tsr_sender_counters sender_counters() const;
+    std::size_t arena_len() const { return arena_words_ * sizeof(arena_[0]); }
     /* Instructions done, by kind of work. */
     const std::array<std::uint64_t, TSR_WORK_COUNT> &work_units() const { return work_units_; }
     EnergyMj energy() const; /* from power-on until now */
 
   private:
     void add_camera(bool right);
+    std::uint64_t local_us() const { return clock_.local_us(around_.queue.now_us()); }
+    /* Do something at a time of the clock, if this life lasts until then. */
+    template <typename Action> void at(std::uint64_t time_us, Action action);
+    void attend();
     void schedule_step(std::uint64_t time_us);
     void step();
     void serve_mac();
-    void note_phase();
+    void note_phase(tsr_node_phase phase);
     static void fill_entropy(void *self, std::uint8_t *bytes, std::size_t len);
 
     const SiteNode &site_node_;
@@ -82,10 +102,16 @@ class EmulatedNode
     Surroundings around_;
     std::unique_ptr<NodeSetup> setup_;
     std::unique_ptr<tsr_node> node_;
-    std::vector<std::uint64_t> arena_;
+    std::vector<std::uint64_t> arena_; /* empty without power */
+    std::size_t arena_words_ = 0;
     std::size_t radio_ = 0;
+    NodeClock clock_;
     std::unique_ptr<SourceCamera> left_;
     std::unique_ptr<SourceCamera> right_;
+    std::uint64_t lives_ = 0;
+    tsr_node_counters past_counters_{}; /* of the lives before */
+    tsr_mac_counters past_mac_counters_{};
+    tsr_sender_counters past_sender_counters_{};
     std::uint64_t random_ = 0;
     std::uint64_t busy_until_us_ = 0;
     std::uint64_t step_at_us_ = UINT64_MAX;  /* the step that is scheduled */

@@ -31,7 +31,7 @@ namespace tsr
 struct ReceivedMap {
     std::uint16_t node = 0;
     std::uint32_t counter = 0;
-    std::uint64_t capture_time_us = 0;
+    std::uint64_t capture_time_us = 0; /* virtual time */
     bool kept = false;
     std::size_t map_bytes = 0;
     std::size_t reference_bytes = 0;
@@ -40,7 +40,11 @@ struct ReceivedMap {
 };
 
 /* Reads sink.json in out and compares each map with ground truth. Throws InputError. */
-std::vector<ReceivedMap> read_received_maps(const Site &site, Pictures &pictures, const std::filesystem::path &out);
+std::vector<ReceivedMap> read_received_maps(const Site &site, const Simulation &simulation, Pictures &pictures,
+                                            const std::filesystem::path &out);
+
+/* What went wrong on purpose, in order of time. */
+nlohmann::ordered_json faults_json(const Simulation &simulation);
 
 nlohmann::ordered_json make_summary(const Site &site, const Simulation &simulation,
                                     const std::vector<ReceivedMap> &maps, unsigned sink_restarts, double wall_time_s);

@@ -15,7 +15,8 @@
 
 #include "tsr/emulator/emulated_node.h"
 #include "tsr/emulator/event_queue.h"
-#include "tsr/emulator/sink_process.h"
+#include "tsr/emulator/fault_timeline.h"
+#include "tsr/emulator/sink_link.h"
 #include "tsr/host/pcapng.h"
 
 namespace tsr
@@ -45,7 +46,7 @@ class Simulation
     static constexpr std::size_t kWatchingNotedMax = 20'000;
 
     /* All are kept. Throws InputError for recordings or configurations that cannot be run. */
-    Simulation(const Site &site, const KeyRing &keys, Pictures &pictures, SinkProcess &sink);
+    Simulation(const Site &site, const KeyRing &keys, Pictures &pictures, SinkLink &sink);
     ~Simulation();
     Simulation(const Simulation &) = delete;
     Simulation &operator=(const Simulation &) = delete;
@@ -55,6 +56,10 @@ class Simulation
     std::uint64_t duration_us() const { return queue_.now_us(); }
     const std::vector<std::unique_ptr<EmulatedNode>> &nodes() const { return nodes_; }
     const std::vector<PhaseChange> &timeline() const { return timeline_; }
+    FaultTimeline &faults() { return *faults_; }
+    const FaultTimeline &faults() const { return *faults_; }
+    /* When a node's clock showed a time. */
+    std::uint64_t virtual_us(std::uint16_t node, std::uint64_t local_us) const;
     const PcapngCapture &capture() const { return capture_; }
     const AirTally &air_tally(std::size_t node_index) const { return air_tallies_.at(node_index); }
     /* Whether everything was delivered before patience ended. */
@@ -66,12 +71,13 @@ class Simulation
 
     const Site &site_;
     Pictures &pictures_;
-    SinkProcess &sink_;
+    SinkLink &sink_;
     PowerModel power_;
     EventQueue queue_;
     std::unique_ptr<Air> air_;
     std::vector<std::unique_ptr<EmulatedNode>> nodes_;
     EmulatedNode *gateway_ = nullptr;
+    std::unique_ptr<FaultTimeline> faults_;
     void note(const PhaseChange &change);
 
     std::vector<PhaseChange> timeline_;

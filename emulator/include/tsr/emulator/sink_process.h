@@ -19,14 +19,12 @@
 
 #include <sys/types.h>
 
-extern "C" {
-#include "tsr/wire/link.h"
-}
+#include "tsr/emulator/sink_link.h"
 
 namespace tsr
 {
 
-class SinkProcess
+class SinkProcess : public SinkLink
 {
   public:
     struct Options {
@@ -40,14 +38,16 @@ class SinkProcess
 
     /* Starts the process. Throws InputError if it cannot be run. */
     explicit SinkProcess(Options options);
-    ~SinkProcess();
+    ~SinkProcess() override;
     SinkProcess(const SinkProcess &) = delete;
     SinkProcess &operator=(const SinkProcess &) = delete;
 
     /* Send one encoded link frame; returns the bytes of its ANSWER. Throws
      * InputError if the sink refuses its input, std::runtime_error if it
      * cannot be kept alive. */
-    std::vector<std::uint8_t> exchange(const std::uint8_t *frame, std::size_t len);
+    std::vector<std::uint8_t> exchange(const std::uint8_t *frame, std::size_t len) override;
+
+    void restart() override;
 
     /* Let it export and end; checks its exit status. */
     void finish();
@@ -56,7 +56,7 @@ class SinkProcess
 
   private:
     void start();
-    void restart();
+    void recover();
     bool try_finish();
     bool connect_socket();
     bool send_all(const std::uint8_t *bytes, std::size_t len);

@@ -26,6 +26,7 @@
 extern "C" {
 #include "tsr/hal/radio.h"
 }
+#include "tsr/hal/air/link_losses.h"
 #include "tsr/hal/air/model.h"
 #include "tsr/hal/air/neighbours.h"
 #include "tsr/hal/air/propagation.h"
@@ -34,13 +35,14 @@ extern "C" {
 namespace tsr
 {
 
-struct AirTimes {                    /* what a radio did, us; the six add up to the time that has passed */
+struct AirTimes {                    /* what a radio did, us; all together the time that has passed */
     std::uint64_t transmitting = 0;  /* frames of its own */
     std::uint64_t assessing = 0;     /* from transmit() to the frame or to a busy channel: CCA, turnaround */
     std::uint64_t awaiting = 0;      /* from the end of a frame to its acknowledgement or the end of the wait */
     std::uint64_t acknowledging = 0; /* acknowledgements on air for others' frames */
     std::uint64_t receiving = 0;     /* listening, whether or not there is anything to hear */
     std::uint64_t sleeping = 0;
+    std::uint64_t off = 0; /* without power */
 };
 
 /* One PSDU on air, acknowledgements included. */
@@ -84,6 +86,13 @@ class Air
     void set_tap(Tap tap) { tap_ = std::move(tap); }
     /* Asked once at the end of every transmission, before the tap. */
     void set_judge(Judge judge) { judge_ = std::move(judge); }
+    /*
+     * Without power a radio is deaf and forgets its configuration; what it sends is cut: nobody gets it, the tap does
+     * not see it, and no TX_DONE comes. With power it sleeps until it is configured anew. Not from an event handler.
+     */
+    void set_power(std::size_t index, bool on);
+    /* Frames that begin while a loss is there suffer it; losses of one link add up. */
+    air::LinkLosses &losses() { return losses_; }
     std::uint64_t transmissions() const { return transmissions_; }
     AirTimes times(std::size_t index) const; /* until now */
     /* Of a link without its fading, rounded; kSilentDbm between radios that are no neighbours. */
@@ -108,8 +117,9 @@ class Air
 
     void sense(Radio &radio);
     void send_data(Radio &radio);
-    void send_ack(Radio &radio, Radio &to, std::uint8_t sequence, std::uint64_t frame_end_us);
+    void send_ack(Radio &radio, Radio &to, std::uint64_t asker_life, std::uint8_t sequence, std::uint64_t frame_end_us);
     std::shared_ptr<Transmission> begin(Radio &sender, std::vector<std::uint8_t> psdu);
+    void cut(Radio &sender);
     void arrive(const Transmission &transmission);
     std::vector<Receipt> leave(const Transmission &transmission);
     void end(const Transmission &transmission);
@@ -128,6 +138,7 @@ class Air
     air::Propagation propagation_;
     air::ReceiverModel receivers_;
     air::Neighbours neighbours_;
+    air::LinkLosses losses_;
     std::uint64_t kept_q32_; /* part of the frames that frame_loss leaves */
     Clock clock_;
     Tap tap_;

@@ -43,6 +43,10 @@ class SourceCamera
 
     tsr_camera camera() { return {&kOps, this}; }
     void finish();
+    /* Its power is gone: a capture under way ends without a word, and finish() must not be called for it. */
+    void abort() { busy_ = false; }
+    /* Captures that end while it fails end with TSR_ERR_IO and show nothing. */
+    void set_failing(bool failing) { failing_ = failing; }
 
     std::uint64_t captures() const { return captures_; }
 
@@ -56,6 +60,7 @@ class SourceCamera
     std::uint64_t exposure_us_ = 0;
     std::uint64_t captures_ = 0;
     bool busy_ = false;
+    bool failing_ = false;
 };
 
 } // namespace tsr

@@ -23,6 +23,8 @@
 #include <string_view>
 #include <vector>
 
+#include "tsr/host/fault.h"
+
 namespace tsr
 {
 
@@ -40,6 +42,7 @@ enum class Role {
 };
 
 std::string_view role_name(Role role);
+bool has_camera(Role role);
 
 inline constexpr std::uint32_t kFadingPeriodMsMax = 3'600'000;
 
@@ -137,6 +140,7 @@ struct Site {
     SiteBattery battery;
     std::vector<SiteNode> nodes;
     std::vector<SitePair> pairs;
+    std::vector<SiteFault> faults; /* in the order of the file */
 
     const SiteNode *node(std::uint16_t id) const;             /* null: no such node */
     const SiteNode &gateway() const;                          /* of a checked site */
@@ -152,7 +156,8 @@ Site load_site(const std::filesystem::path &file);
  * Refuses a site that cannot work: ids outside 1..0xfffd or used twice, an
  * unknown parent, a cycle, other than one gateway, a wing whose parent is not
  * its lead, a camera node without a pair, a pair of nodes that do not exist or
- * have other roles, cameras that are not rectified, numbers out of range.
+ * have other roles, cameras that are not rectified, faults of nodes that do not
+ * exist, cannot have them or are dead by then, numbers out of range.
  * Throws InputError for the first fault found.
  */
 void check_site(const Site &site);

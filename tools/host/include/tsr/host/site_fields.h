@@ -17,6 +17,8 @@ namespace tsr
 void read_radio(TomlFields &fields, SiteRadio &radio);
 void read_thresholds(TomlFields &fields, SiteThresholds &limits);
 void read_battery(TomlFields &fields, SiteBattery &battery);
+/* All [[fault]] tables of a file; whether their nodes can have them, check_site() tells. */
+std::vector<SiteFault> read_faults(TomlFields &top);
 
 } // namespace tsr
 

@@ -54,6 +54,7 @@ struct Scenario {
     SiteRadio radio;
     SiteThresholds thresholds;
     SiteBattery battery;
+    std::vector<SiteFault> faults; /* of nodes as stage_scenario() numbers them */
 };
 
 /* Is it a scenario, not a site? By its having a [scene]. Throws InputError if it is no TOML. */

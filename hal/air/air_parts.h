@@ -1,0 +1,61 @@
+/*
+ * The radios of a medium and what they have on air: private to hal/air.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+#ifndef TSR_HAL_AIR_PARTS_H
+#define TSR_HAL_AIR_PARTS_H
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "tsr/hal/air.h"
+
+namespace tsr
+{
+
+struct Air::Radio {
+    Radio(Air &medium, std::size_t index_in_it, EventHandler owner)
+        : air(&medium), index(index_in_it), handler(std::move(owner)), receiver(medium.receivers_)
+    {
+    }
+
+    Air *air;
+    std::size_t index;
+    EventHandler handler;
+    std::uint8_t channel = 0;
+    std::uint16_t pan_id = 0;
+    std::uint16_t address = 0;
+    bool receiving = false;
+    bool turning = false;           /* from a clear channel to the transmission: deaf */
+    bool sending = false;           /* a PSDU of its own is on air: frame or acknowledgement */
+    bool sending_ack = false;       /* it is an acknowledgement */
+    bool sent = false;              /* the frame of the transmit() under way has been on air */
+    bool busy = false;              /* between transmit() and TX_DONE */
+    std::vector<std::uint8_t> psdu; /* of the transmit() under way */
+    std::uint64_t attempt = 0;      /* counts transmit() calls */
+    std::uint64_t life = 0;         /* counts losses of power: what an earlier life has begun does not go on */
+    bool powered = true;
+    std::shared_ptr<Transmission> on_air; /* while sending */
+    air::Receiver receiver;
+    mutable AirTimes times;
+    mutable std::uint64_t accounted_us = 0;
+};
+
+struct Air::Transmission {
+    std::uint64_t number = 0;
+    std::size_t sender = 0;
+    std::uint8_t channel = 0;
+    std::uint64_t start_us = 0;
+    std::uint64_t end_us = 0;
+    std::vector<std::uint8_t> psdu;
+    Radio *acknowledges = nullptr;  /* an acknowledgement's addressee */
+    std::uint64_t asker_life = 0;   /* in which life the addressee asked for it */
+    std::uint64_t frame_end_us = 0; /* of the frame it acknowledges */
+    bool cut = false;               /* its sender lost its power */
+};
+
+} // namespace tsr
+
+#endif
