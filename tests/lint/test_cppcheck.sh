@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$TSR_SOURCE"
 command -v cppcheck >/dev/null || { echo "tarsier skipped: test_cppcheck: cppcheck is not installed"; exit 77; }
 includes=()
-for folder in firmware/*/include hal/include hal/*/include tools/host/include tools/tarsier/include emulator/include sink/include; do
+for folder in firmware/*/include hal/include hal/*/include tools/*/include emulator/include sink/include; do
     includes+=(-I "$folder")
 done
 cppcheck --quiet --error-exitcode=1 --inline-suppr --enable=warning,performance,portability --std=c11 --language=c \

@@ -119,8 +119,8 @@ void add_trees_and_posts(World &world, const StreetPlan &plan, const PropSurface
         const float side = i % 2 == 0 ? 1.0F : -1.0F;
         for (const float s : {side, -side}) {
             Mesh mesh = make_lamp_post(5.4F, props);
-            world.add(post, shifted(s > 0 ? turned(std::move(mesh), 180) : std::move(mesh), plan.boundary(i),
-                                    s * kPostY, kPavementZ - 0.05F));
+            world.add(post, shifted(turned(std::move(mesh), s > 0 ? 180 : 0), plan.boundary(i), s * kPostY,
+                                    kPavementZ - 0.05F));
         }
         world.add(sign, shifted(turned(make_road_sign(props, i % 2 == 0), side > 0 ? 90 : -90),
                                 plan.boundary(i) + side * 2.1F, side * (kPostY - 0.05F), kPavementZ - 0.05F));
