@@ -52,6 +52,7 @@ class ClockedSource : public FrameSource
     }
 
     ImageSize size() const override { return source_->size(); }
+    void prepare(std::uint64_t time_us) override { source_->prepare(clock_.virtual_us(time_us)); }
     void show(std::uint64_t time_us, const tsr_gray &image) override
     {
         source_->show(clock_.virtual_us(time_us), image);

@@ -19,17 +19,26 @@ class SceneSource : public FrameSource
     SceneSource(VirtualCamera &camera, RenderPool &pool) : camera_(camera), pool_(pool) {}
 
     ImageSize size() const override { return {camera_.camera().width, camera_.camera().height}; }
-    void prepare(std::uint64_t time_us) override { rendered_ = pool_.render(camera_, time_us); }
-    void show(std::uint64_t time_us, const tsr_gray &image) override
+    void prepare(std::uint64_t time_us) override
+    {
+        if (rendered_.valid()) { /* of a capture that lost its power */
+            rendered_.wait();
+        }
+        prepared_us_ = time_us;
+        rendered_ = pool_.render(camera_, time_us);
+    }
+    /* For the instant that was prepared: a clock may have been set meanwhile. */
+    void show(std::uint64_t, const tsr_gray &image) override
     {
         rendered_.get();
-        camera_.expose(time_us, image);
+        camera_.expose(prepared_us_, image);
     }
 
   private:
     VirtualCamera &camera_;
     RenderPool &pool_;
     std::future<void> rendered_;
+    std::uint64_t prepared_us_ = 0;
 };
 
 } // namespace

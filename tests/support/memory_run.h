@@ -75,6 +75,7 @@ class TinyPictures : public Pictures
       public:
         Source(ImageSize size, bool right) : size_(size), right_(right) {}
         ImageSize size() const override { return size_; }
+        void prepare(std::uint64_t) override {}
         void show(std::uint64_t time_us, const tsr_gray &image) override
         {
             for (unsigned y = 0; y < image.height; ++y) {

@@ -21,8 +21,9 @@ class FrameSource
   public:
     virtual ~FrameSource() = default;
     virtual ImageSize size() const = 0;
-    /* A capture for time_us was asked for: show() follows. Whatever takes long can begin. */
-    virtual void prepare(std::uint64_t time_us) { static_cast<void>(time_us); }
+    /* A capture for time_us was asked for: show() follows, unless the capture is lost. Whatever takes long can begin.
+     */
+    virtual void prepare(std::uint64_t time_us) = 0;
     /* A capture whose exposure begins at time_us; times never decrease. image has the source's size. */
     virtual void show(std::uint64_t time_us, const tsr_gray &image) = 0;
 };

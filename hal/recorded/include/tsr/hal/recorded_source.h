@@ -22,6 +22,7 @@ class RecordedSource : public FrameSource
     explicit RecordedSource(std::shared_ptr<RecordedFrames> frames) : frames_(std::move(frames)) {}
 
     ImageSize size() const override { return frames_->size(); }
+    void prepare(std::uint64_t) override {}
     void show(std::uint64_t time_us, const tsr_gray &image) override;
 
   private:
