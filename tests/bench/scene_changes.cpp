@@ -6,7 +6,7 @@
  *
  *   event  a stretch of time in which what the camera sees of bodies or their shadows changed, with
  *          pauses of less than kRestS, and in which a moved body covers at least kEventPart of the picture
- *          in some frame; caught if a frame of it wakes
+ *          in some frame; caught if a frame of it wakes, or one of the kRestS after it
  *   quiet  a frame before which nothing of that has changed for kRestS, whatever light and sensor did; false
  *          if it wakes
  *

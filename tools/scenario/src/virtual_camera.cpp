@@ -7,20 +7,13 @@
 
 #include <cmath>
 
+#include "tsr/scene/hash.h"
+
 namespace tsr
 {
 
 namespace
 {
-
-/* SplitMix64 (Steele, Lea, Flood, OOPSLA 2014). */
-std::uint64_t mix(std::uint64_t value)
-{
-    value += 0x9e3779b97f4a7c15U;
-    value = (value ^ value >> 30) * 0xbf58476d1ce4e5b9U;
-    value = (value ^ value >> 27) * 0x94d049bb133111ebU;
-    return value ^ value >> 31;
-}
 
 scene::SensorModel seeded(scene::SensorModel model, std::uint64_t seed)
 {
@@ -30,7 +23,7 @@ scene::SensorModel seeded(scene::SensorModel model, std::uint64_t seed)
 
 std::uint64_t seed_of(const Scenario &scenario, const StagedCamera &camera)
 {
-    return mix(mix(scenario.seed) + 2u * camera.node + (camera.right ? 1u : 0u));
+    return scene::hash64(scene::hash64(scenario.seed) + 2u * camera.node + (camera.right ? 1u : 0u));
 }
 
 } // namespace
@@ -45,7 +38,7 @@ VirtualCamera::VirtualCamera(const Scenario &scenario, const Staging &staging, c
 
 std::uint64_t VirtualCamera::jittered(std::uint64_t time_us) const
 {
-    const std::uint64_t late = mix(seed_ ^ time_us) % (2 * jitter_us_ + 1);
+    const std::uint64_t late = scene::hash64(seed_ ^ time_us) % (2 * jitter_us_ + 1);
     return time_us + late < jitter_us_ ? 0 : time_us + late - jitter_us_;
 }
 

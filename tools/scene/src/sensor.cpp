@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tsr/scene/hash.h"
+
 namespace tsr::scene
 {
 
@@ -17,15 +19,6 @@ namespace
 constexpr float kExposureMin = 1.0F / 64;
 constexpr float kExposureMax = 1;
 constexpr float kStep = 0.125F;
-
-/* SplitMix64 (Steele, Lea, Flood, OOPSLA 2014). */
-std::uint64_t mix(std::uint64_t value)
-{
-    value += 0x9e3779b97f4a7c15U;
-    value = (value ^ value >> 30) * 0xbf58476d1ce4e5b9U;
-    value = (value ^ value >> 27) * 0x94d049bb133111ebU;
-    return value ^ value >> 31;
-}
 
 /* Nearly normal, from 32 bits: the sum of four bytes has mean 510 and variance 4 (256^2 - 1) / 12. */
 float normal(std::uint32_t bits)
@@ -43,7 +36,7 @@ void Sensor::expose(const Camera &camera, const Layers &layers, const Light &lig
     const float centre_x = static_cast<float>(camera.width - 1) / 2,
                 centre_y = static_cast<float>(camera.height - 1) / 2;
     const float falloff = model_.vignetting / (centre_x * centre_x + centre_y * centre_y);
-    const std::uint64_t stream = mix(model_.seed + captures_ * 0x632be59bd9b4e019U);
+    const std::uint64_t stream = hash64(model_.seed + captures_ * 0x632be59bd9b4e019U);
     std::size_t i = 0;
     for (int y = 0; y < camera.height; ++y) {
         std::uint8_t *row = image.pixels + static_cast<std::size_t>(y) * image.stride;
@@ -53,7 +46,7 @@ void Sensor::expose(const Camera &camera, const Layers &layers, const Light &lig
             const float seen = layers.radiance(i, light) * (1 - falloff * (dx * dx + dy * dy));
             float electrons = std::min(to_electrons * seen, model_.full_well_e);
             if (model_.noise) {
-                const std::uint64_t random = mix(stream + i);
+                const std::uint64_t random = hash64(stream + i);
                 electrons += std::sqrt(electrons) * normal(static_cast<std::uint32_t>(random)) +
                              model_.read_noise_e * normal(static_cast<std::uint32_t>(random >> 32));
             }

@@ -58,7 +58,10 @@ void add_hall(World &world, const SceneOptions &options)
             {i % 2 == 0 ? Pattern::planks : Pattern::patches, chance.between(0.15F, 0.75F), chance.between(0.05F, 0.3F),
              chance.between(0.1F, 0.3F), 0.4F, static_cast<std::uint32_t>(100 + i)});
         const float angle = chance.between(0, 6.28F), away = chance.between(2.6F, 4.4F);
-        const Eigen::Vector3f size(chance.between(0.2F, 0.7F), chance.between(0.2F, 0.7F), chance.between(0.2F, 1.1F));
+        /* One after the other: compilers differ in the order of arguments. */
+        const float high = chance.between(0.2F, 1.1F), deep = chance.between(0.2F, 0.7F),
+                    wide = chance.between(0.2F, 0.7F);
+        const Eigen::Vector3f size(wide, deep, high);
         Mesh thing = i % 3 == 0 ? make_cylinder(size.x() / 2, size.x() / 2, size.z(), 18, surface)
                                 : shifted(make_centred_box({0, 0, 0}, size, surface), 0, 0, size.z() / 2);
         world.add(clutter, shifted(turned(std::move(thing), chance.between(0, 90)), away * std::cos(angle),

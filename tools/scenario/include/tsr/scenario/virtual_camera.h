@@ -16,7 +16,7 @@ namespace tsr
 class VirtualCamera
 {
   public:
-    /* camera and staging are kept. */
+    /* staging is kept. */
     VirtualCamera(const Scenario &scenario, const Staging &staging, const StagedCamera &camera);
 
     /* Two sensors on one board expose alike: for captures of one instant this one takes the other's exposure and gain.

@@ -51,7 +51,7 @@ class Sensor
     /* For the sensor at its side, which must see alike: the same exposure and gain from now on. */
     void follow(const Sensor &other);
 
-    float exposure() const { return exposure_; } /* 1/8 .. 1 of the longest */
+    float exposure() const { return exposure_; } /* 1/64 .. 1 of the longest */
     float gain() const { return gain_; }
     std::uint64_t captures() const { return captures_; }
 

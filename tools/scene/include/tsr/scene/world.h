@@ -61,7 +61,7 @@ struct World {
     /* A body that moves. */
     void add(ObjectId object, Mesh mesh, Motion motion);
 
-    Light light_at(std::uint64_t time_us) const { return light ? light(time_us) : Light{}; }
+    Light light_at(std::uint64_t time_us) const { return light(time_us); }
     /* Its pose, rounded. */
     std::optional<Eigen::Affine3f> pose_of(const Body &body, std::uint64_t time_us) const;
 };
