@@ -229,7 +229,7 @@ static void print_report(void)
     print_field(" map_bytes ", counters->map_bytes);
     print_field(" view_bytes ", tsr_node_get_counters(&wing)->view_bytes);
     print_field(" frames_on_loopback ", loopback.frames);
-    print_field(" time_ms ", (size_t)(tsr_mps2_clock_now_us() / 1000u));
+    print_field(" time_ms ", (size_t)((uint32_t)tsr_mps2_clock_now_us() / 1000u));
     print_field(" stack_used ", tsr_mps2_stack_used_len());
     print_field(" stack_len ", tsr_mps2_stack_len());
     print_field(" node_len ", sizeof lead);

@@ -43,10 +43,15 @@ static bool capture_ended(struct tsr_capture *capture)
 void tsr_node_rest(struct tsr_node *node, uint64_t now_us)
 {
     enter(node, TSR_PHASE_IDLE);
-    uint64_t period_us = node->config.watch_period_us;
     if (node->next_watch_us <= now_us) {
-        uint64_t missed = (now_us - node->next_watch_us) / period_us;
-        node->next_watch_us += (missed + 1) * period_us;
+        /* Whole periods of up to an hour at once: a division of 64 bits is a library of 700 bytes on a Cortex-M. */
+        uint32_t period_us = node->config.watch_period_us;
+        uint32_t most_us = UINT32_MAX / period_us * period_us;
+        while (now_us - node->next_watch_us >= most_us) {
+            node->next_watch_us += most_us;
+        }
+        uint32_t late_us = (uint32_t)(now_us - node->next_watch_us);
+        node->next_watch_us += (late_us / period_us + 1u) * (uint64_t)period_us;
     }
 }
 

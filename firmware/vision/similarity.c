@@ -115,7 +115,7 @@ static struct part_sums compare_part(struct tsr_similarity *similarity, struct p
             }
             uint32_t apart_q4 = a > b ? a - b : b - a;
             uint32_t clipped_q4 = apart_q4 < clip_q4 ? apart_q4 : clip_q4;
-            similarity->squares_q8 += (uint64_t)apart_q4 * apart_q4;
+            similarity->sums.squares_q8 += (uint64_t)apart_q4 * apart_q4;
             sums.clipped_q8 += clipped_q4 * clipped_q4;
             sums.both_count++;
         }
@@ -145,12 +145,6 @@ static void compare_block_row(struct tsr_similarity *similarity)
     similarity->rows_done = (uint16_t)(similarity->rows_done + part.height);
 }
 
-static void finish_mean(struct tsr_similarity *similarity)
-{
-    uint64_t count = similarity->sums.both_count;
-    similarity->sums.mse_q8 = count == 0 ? 0 : (uint32_t)((similarity->squares_q8 + count / 2u) / count);
-}
-
 enum tsr_status tsr_similarity_run(struct tsr_similarity *similarity, uint16_t rows)
 {
     if (similarity == NULL || rows == 0) {
@@ -160,9 +154,6 @@ enum tsr_status tsr_similarity_run(struct tsr_similarity *similarity, uint16_t r
     unsigned end = (unsigned)similarity->rows_done + rows;
     while (similarity->rows_done < height && similarity->rows_done < end) {
         compare_block_row(similarity);
-        if (similarity->rows_done == height) {
-            finish_mean(similarity);
-        }
     }
     return similarity->rows_done < height ? TSR_AGAIN : TSR_OK;
 }

@@ -15,8 +15,8 @@ STATE_LEN = 512  # more than any module's struct
 MODES = {"sad": 0, "sad8": 1, "census": 2, "smooth": 3, "raw": 4, "ssd": 5}
 STEPS = {name: i + 1 for i, name in
          enumerate(("median3", "median5", "speckle", "fill", "gaussian3", "gaussian5", "diffusion"))}
-U8, U16, I16, U32, SIZE, ANY = (ctypes.c_uint8, ctypes.c_uint16, ctypes.c_int16, ctypes.c_uint32, ctypes.c_size_t,
-                                ctypes.c_void_p)
+U8, U16, I16, U32, U64, SIZE, ANY = (ctypes.c_uint8, ctypes.c_uint16, ctypes.c_int16, ctypes.c_uint32, ctypes.c_uint64,
+                                     ctypes.c_size_t, ctypes.c_void_p)
 
 
 class Gray(ctypes.Structure):
@@ -63,7 +63,7 @@ class SimilarityConfig(ctypes.Structure):
 
 
 class SimilarityResult(ctypes.Structure):
-    _fields_ = [("mse_q8", U32), ("both_count", U32), ("one_count", U32), ("blocks", U16), ("different_blocks", U16)]
+    _fields_ = [("squares_q8", U64), ("both_count", U32), ("one_count", U32), ("blocks", U16), ("different_blocks", U16)]
 
 
 def load():

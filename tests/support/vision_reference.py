@@ -139,13 +139,12 @@ def quantise(values, step_log2, disparities):
 
 
 def similarity(a, b, block_log2, clip_q4, threshold_q8):
-    """Eqs. (20) to (22): (mse_q8, pixels in both, pixels in one, blocks that count, different blocks)."""
+    """Eqs. (20) to (22): (squares summed, pixels in both, pixels in one, blocks that count, different blocks)."""
     a, b = a.astype(object), b.astype(object)
     both = (a != INVALID) & (b != INVALID)
     one = (a != INVALID) ^ (b != INVALID)
     squares = np.where(both, (a - b) ** 2, 0)
     count = int(both.sum())
-    mse = math.floor(Fraction(int(squares.sum()), count) + Fraction(1, 2)) if count else 0
     side = 2 ** block_log2
     blocks = different = 0
     for y in range(0, a.shape[0] - side + 1, side):
@@ -156,4 +155,4 @@ def similarity(a, b, block_log2, clip_q4, threshold_q8):
             blocks += 1
             clipped = np.minimum(squares[y:y + side, x:x + side], clip_q4 ** 2)[valid]
             different += Fraction(int(clipped.sum()), int(valid.sum())) > threshold_q8
-    return mse, count, int(one.sum()), blocks, different
+    return int(squares.sum()), count, int(one.sum()), blocks, different

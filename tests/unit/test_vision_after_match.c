@@ -222,12 +222,12 @@ static void test_similarity_counts_blocks(void)
     TEST_ASSERT_TRUE(compare(&by_eights));
     TEST_ASSERT_EQUAL(PIXELS, result.both_count);
     TEST_ASSERT_EQUAL(0, result.one_count);
-    TEST_ASSERT_EQUAL(0, result.mse_q8);
+    TEST_ASSERT_EQUAL(0, tsr_similarity_mse_q8(&result));
     TEST_ASSERT_EQUAL(8, result.blocks); /* the last two rows fill none */
     fill_block(map, 1, 0, 32);
     TEST_ASSERT_TRUE(compare(&by_eights)); /* one is fewer than two */
     TEST_ASSERT_EQUAL(1, result.different_blocks);
-    TEST_ASSERT_EQUAL((64 * 1024 + PIXELS / 2) / PIXELS, result.mse_q8);
+    TEST_ASSERT_EQUAL((64 * 1024 + PIXELS / 2) / PIXELS, tsr_similarity_mse_q8(&result));
     fill_block(map, 3, 1, 3000);
     TEST_ASSERT_FALSE(compare(&by_eights));
     TEST_ASSERT_EQUAL(2, result.different_blocks);
@@ -263,7 +263,7 @@ static void test_similarity_needs_half_of_a_block(void)
     memset(map, 0xff, sizeof map);
     TEST_ASSERT_TRUE(compare(&chosen));
     TEST_ASSERT_EQUAL(0, result.both_count);
-    TEST_ASSERT_EQUAL(0, result.mse_q8);
+    TEST_ASSERT_EQUAL(0, tsr_similarity_mse_q8(&result));
 }
 
 int main(void)
