@@ -7,6 +7,7 @@
  *   forward.c  fragments for others        uplink.c   gateway's side of the link
  *   watch.c    watching, waking, capturing wing.c     the wing's part
  *   mapping.c  from two views to a decision   report.c   coding and sending the map
+ *   event.c    depth rules and their messages
  *
  * A stage function does one bounded piece of its phase and says what it did.
  *
@@ -70,6 +71,10 @@ void tsr_node_reset_inbox(struct tsr_node *node);
 enum tsr_status tsr_node_send_short(struct tsr_node *node, enum tsr_message_kind kind, uint16_t destination,
                                     const uint8_t *body, size_t body_len, enum token token);
 void tsr_node_answer(struct tsr_node *node, uint16_t message_id, enum tsr_delivery state);
+/* Seal the body_len bytes that stand at message + TSR_MESSAGE_HEADER_LEN, all at once. */
+enum tsr_status tsr_node_seal_short(struct tsr_node *node, enum tsr_message_kind kind, uint16_t destination,
+                                    uint8_t message[TSR_FRAGMENT_PIECE_MAX], size_t body_len, size_t *message_len,
+                                    uint32_t *counter);
 /* Begin to seal the body_len bytes that stand in the message region. */
 enum tsr_status tsr_node_start_sealing(struct tsr_node *node, enum tsr_message_kind kind, uint16_t destination);
 /* *done when the sender has taken the sealed message over. */
@@ -101,6 +106,12 @@ void tsr_node_on_wake(struct tsr_node *node, const struct tsr_body_capture *wake
 
 /* mapping.c: UNPACKING .. COMPARING */
 struct work tsr_node_make_map(struct tsr_node *node, uint64_t now_us);
+
+/* event.c: MEASURING and NOTIFYING; to MEASURING, or past both if there are no rules */
+struct work tsr_node_measure(struct tsr_node *node, uint64_t now_us);
+void tsr_node_start_measuring(struct tsr_node *node);
+/* NULL, or the name of a bad field. */
+const char *tsr_node_check_rules(const struct tsr_node_config *config);
 
 /* report.c: ENCODING .. SENDING */
 struct work tsr_node_report_map(struct tsr_node *node, uint64_t now_us);

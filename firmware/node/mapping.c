@@ -168,7 +168,7 @@ static struct work filter(struct tsr_node *node)
     size_t units = (size_t)(tsr_median_rows_done(&node->work.median) - before) * node->config.match.width;
     if (status == TSR_OK) {
         node->counters.maps_made++;
-        enter(node, TSR_PHASE_COMPARING);
+        tsr_node_start_measuring(node);
     }
     return work_of(TSR_WORK_MEDIAN, units);
 }

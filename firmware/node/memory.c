@@ -90,6 +90,10 @@ static const char *bad_camera_field(const struct tsr_node_config *config)
     if (config->step_log2 > STEP_LOG2_MAX) {
         return "step_log2";
     }
+    const char *bad_rule = tsr_node_check_rules(config);
+    if (bad_rule != NULL) {
+        return bad_rule;
+    }
     if (config->reference_step > TSR_PICTURE_STEP_MAX && config->reference_step != TSR_REFERENCE_NONE) {
         return "reference_step";
     }
@@ -153,8 +157,8 @@ static size_t scratch_region_len(const struct tsr_node_config *config)
     size_t view_decode = sizeof(struct tsr_view_decoder) + TSR_VIEW_SCRATCH_LEN(width);
     size_t map_encode = sizeof(struct tsr_map_encoder) + sizeof(uint16_t) * TSR_MAP_SCRATCH_COUNT(width);
     size_t match = tsr_match_scratch_len(&config->match);
-    return larger(larger(picture_encode, view_decode),
-                  larger(larger(map_encode, match), TSR_MEDIAN_SCRATCH_LEN(width)));
+    size_t filter = larger(TSR_MEDIAN_SCRATCH_LEN(width), sizeof(struct tsr_zone));
+    return larger(larger(picture_encode, view_decode), larger(larger(map_encode, match), filter));
 }
 
 enum tsr_status tsr_node_plan_memory(const struct tsr_node_config *config, struct tsr_memory_plan *plan)

@@ -77,7 +77,8 @@ enum tsr_status tsr_node_init(struct tsr_node *node, const struct tsr_node_confi
     tsr_node_reset_inbox(node);
     enter(node, TSR_PHASE_IDLE);
     node->next_watch_us = now_us;
-    node->recapture = true; /* the first map needs no change */
+    node->recapture = true;                                            /* the first map needs no change */
+    memset(node->notice.reported, 0xff, sizeof node->notice.reported); /* nothing is */
     node->uplink.timer_us = TSR_TIME_NEVER;
     if (config->role == TSR_ROLE_GATEWAY) {
         tsr_node_start_uplink(node, now_us);
@@ -113,6 +114,8 @@ static struct work step_stage(struct tsr_node *node, uint64_t now_us)
     case TSR_PHASE_MATCHING:
     case TSR_PHASE_MEDIAN:
     case TSR_PHASE_COMPARING: return tsr_node_make_map(node, now_us);
+    case TSR_PHASE_MEASURING:
+    case TSR_PHASE_NOTIFYING: return tsr_node_measure(node, now_us);
     case TSR_PHASE_ENCODING:
     case TSR_PHASE_SEALING:
     case TSR_PHASE_SENDING: return tsr_node_report_map(node, now_us);

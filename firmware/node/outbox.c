@@ -29,6 +29,20 @@ static enum tsr_status make_header(struct tsr_node *node, enum tsr_message_kind 
     return TSR_OK;
 }
 
+enum tsr_status tsr_node_seal_short(struct tsr_node *node, enum tsr_message_kind kind, uint16_t destination,
+                                    uint8_t message[TSR_FRAGMENT_PIECE_MAX], size_t body_len, size_t *message_len,
+                                    uint32_t *counter)
+{
+    struct tsr_message_header header;
+    const struct tsr_cipher *cipher = cipher_for(node, destination, &header.key_use);
+    enum tsr_status status = make_header(node, kind, destination, &header);
+    if (status == TSR_OK) {
+        *counter = header.counter;
+        status = tsr_message_seal(&header, cipher, message, TSR_FRAGMENT_PIECE_MAX, body_len, message_len);
+    }
+    return status;
+}
+
 enum tsr_status tsr_node_send_short(struct tsr_node *node, enum tsr_message_kind kind, uint16_t destination,
                                     const uint8_t *body, size_t body_len, enum token token)
 {
@@ -39,21 +53,17 @@ enum tsr_status tsr_node_send_short(struct tsr_node *node, enum tsr_message_kind
     if (body_len + TSR_MESSAGE_OVERHEAD_LEN > sizeof message) {
         return TSR_ERR_SIZE;
     }
-    struct tsr_message_header header;
-    const struct tsr_cipher *cipher = cipher_for(node, destination, &header.key_use);
     memcpy(message + TSR_MESSAGE_HEADER_LEN, body, body_len);
     size_t message_len = 0;
-    enum tsr_status status = make_header(node, kind, destination, &header);
-    if (status == TSR_OK) {
-        status = tsr_message_seal(&header, cipher, message, sizeof message, body_len, &message_len);
-    }
+    uint32_t counter = 0;
+    enum tsr_status status = tsr_node_seal_short(node, kind, destination, message, body_len, &message_len, &counter);
     if (status != TSR_OK) {
         return status;
     }
     struct tsr_fragment fragment = tsr_fragment_of(message, message_len, 0);
-    fragment.origin = header.origin;
+    fragment.origin = node->config.address;
     fragment.destination = destination;
-    fragment.message_id = (uint16_t)header.counter;
+    fragment.message_id = (uint16_t)counter;
     uint8_t payload[TSR_FRAME_PAYLOAD_MAX];
     size_t len = 0;
     status = tsr_fragment_write(&fragment, payload, sizeof payload, &len);

@@ -57,9 +57,7 @@ static const char *bad_picture(const struct tsr_change_config *config)
         return "watched_count";
     }
     for (unsigned i = 0; i < config->watched_count; i++) {
-        const struct tsr_change_rectangle *area = &config->watched[i];
-        if (area->width == 0 || area->height == 0 || area->x + area->width > config->width ||
-            area->y + area->height > config->height) {
+        if (!tsr_rectangle_is_inside(&config->watched[i], config->width, config->height)) {
             return "watched";
         }
     }

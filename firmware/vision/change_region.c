@@ -28,7 +28,7 @@ static bool is_watched(const struct tsr_change_config *config, unsigned x, unsig
     unsigned side = config->reduction;
     bool watched = config->watched_count == 0;
     for (unsigned i = 0; i < config->watched_count && !watched; i++) {
-        const struct tsr_change_rectangle *area = &config->watched[i];
+        const struct tsr_rectangle *area = &config->watched[i];
         watched = x * side < (unsigned)area->x + area->width && x * side + side > area->x &&
                   y * side < (unsigned)area->y + area->height && y * side + side > area->y;
     }

@@ -56,6 +56,54 @@ enum tsr_status tsr_body_read_map(const uint8_t *bytes, size_t len, struct tsr_b
     return TSR_OK;
 }
 
+enum tsr_status tsr_body_write_events(const struct tsr_body_events *body, uint8_t *bytes, size_t cap, size_t *len)
+{
+    if (body->count == 0 || body->count > TSR_BODY_EVENTS_MAX) {
+        return TSR_ERR_ARG;
+    }
+    if (cap < TSR_BODY_EVENT_HEADER_LEN + (size_t)body->count * TSR_BODY_EVENT_LEN) {
+        return TSR_ERR_NOBUF;
+    }
+    struct tsr_writer writer = tsr_writer_make(bytes, cap);
+    tsr_write_u64(&writer, body->capture_time_us);
+    tsr_write_u16(&writer, body->capture_id);
+    for (unsigned i = 0; i < body->count; i++) {
+        tsr_write_u8(&writer, body->events[i].rule);
+        tsr_write_u8(&writer, body->events[i].kind);
+        tsr_write_u16(&writer, body->events[i].share_q12);
+        tsr_write_u16(&writer, body->events[i].disparity_q8);
+    }
+    *len = writer.at;
+    return TSR_OK;
+}
+
+enum tsr_status tsr_body_read_events(const uint8_t *bytes, size_t len, struct tsr_body_events *body)
+{
+    struct tsr_reader reader = tsr_reader_make(bytes, len);
+    struct tsr_body_events read;
+    memset(&read, 0, sizeof read);
+    read.capture_time_us = tsr_read_u64(&reader);
+    read.capture_id = tsr_read_u16(&reader);
+    size_t left = tsr_reader_left(&reader);
+    if (left == 0 || left % TSR_BODY_EVENT_LEN != 0 || left > TSR_BODY_EVENTS_MAX * TSR_BODY_EVENT_LEN) {
+        return TSR_ERR_FORMAT;
+    }
+    read.count = (uint8_t)(left / TSR_BODY_EVENT_LEN);
+    for (unsigned i = 0; i < read.count; i++) {
+        struct tsr_body_event *event = &read.events[i];
+        event->rule = tsr_read_u8(&reader);
+        event->kind = tsr_read_u8(&reader);
+        event->share_q12 = tsr_read_u16(&reader);
+        event->disparity_q8 = tsr_read_u16(&reader);
+        if (event->kind < TSR_EVENT_BEGUN || event->kind > TSR_EVENT_VANISHED ||
+            event->share_q12 > TSR_EVENT_SHARE_ONE) {
+            return TSR_ERR_FORMAT;
+        }
+    }
+    *body = read;
+    return TSR_OK;
+}
+
 enum tsr_status tsr_body_write_status(const struct tsr_body_status *body, uint8_t *bytes, size_t cap, size_t *len)
 {
     if (body->bitmap_len > TSR_BODY_STATUS_BITMAP_MAX) {

@@ -78,7 +78,7 @@ enum tsr_status tsr_message_parse(const uint8_t *message, size_t message_len, ui
     read.counter = tsr_read_u32(&reader);
     read.origin = origin;
     read.destination = destination;
-    if (read.kind < TSR_MESSAGE_WAKE || read.kind > TSR_MESSAGE_STATUS ||
+    if (read.kind < TSR_MESSAGE_WAKE || read.kind > TSR_MESSAGE_EVENT ||
         (read.key_use != TSR_KEY_NODE && read.key_use != TSR_KEY_PAIR)) {
         return TSR_ERR_FORMAT;
     }

@@ -20,6 +20,7 @@ KINDS = {
     "change": (("change_still",), "pixel"),
     "match": (("match",), "row of work x width x disparity"),
     "median": (("median",), "pixel"),
+    "measure": (("zone",), "pixel"),
     "compare": (("quantise", "similarity"), "pixel"),
     "map_encode": (("map_encode",), "pixel"),
     "view_filter": (("view_prefilter", "view_compare"), "pixel"),

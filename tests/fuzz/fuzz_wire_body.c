@@ -48,6 +48,18 @@ static void try_status(const uint8_t *bytes, size_t len)
     require_body(again_len == len && memcmp(again, bytes, len) == 0);
 }
 
+static void try_events(const uint8_t *bytes, size_t len)
+{
+    struct tsr_body_events events;
+    uint8_t again[TSR_BODY_EVENT_HEADER_LEN + TSR_BODY_EVENTS_MAX * TSR_BODY_EVENT_LEN];
+    size_t again_len = 0;
+    if (tsr_body_read_events(bytes, len, &events) != TSR_OK) {
+        return;
+    }
+    require_body(tsr_body_write_events(&events, again, sizeof again, &again_len) == TSR_OK);
+    require_body(again_len == len && memcmp(again, bytes, len) == 0);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t len)
 {
     struct tsr_body_capture capture;
@@ -60,6 +72,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t len)
         require_body(len < TSR_BODY_WAKE_LEN);
     }
     try_map(bytes, len);
+    try_events(bytes, len);
     try_status(bytes, len);
     if (tsr_message_parse(bytes, len, 3, 0, &header) == TSR_OK) {
         require_body(len >= TSR_MESSAGE_OVERHEAD_LEN && header.origin == 3 && header.destination == 0);

@@ -15,7 +15,7 @@ RESULTS = ["change_result", "change_state", "gray_coded", "gray_decoded", "view_
            "near_decoded",
            "picture_coded", "picture_decoded",
            "match", "match_sad8", "match_census", "match_smooth", "match_raw", "match_ssd", "median", "median5", "speckle", "fill", "gaussian3",
-           "gaussian5", "diffusion", "quantise", "rectified", "similarity", "map_coded", "map_decoded", "map_later", "message",
+           "gaussian5", "diffusion", "zone", "quantise", "rectified", "similarity", "map_coded", "map_decoded", "map_later", "message",
            "frames"]
 
 

@@ -80,8 +80,8 @@ static void expect_rectangle(uint16_t x, uint16_t y, uint16_t width, uint16_t he
 {
     struct tsr_change_config watching = config;
     watching.watched_count = 2;
-    watching.watched[0] = (struct tsr_change_rectangle){0, 0, WIDTH, HEIGHT};
-    watching.watched[1] = (struct tsr_change_rectangle){x, y, width, height};
+    watching.watched[0] = (struct tsr_rectangle){0, 0, WIDTH, HEIGHT};
+    watching.watched[1] = (struct tsr_rectangle){x, y, width, height};
     if (good) {
         TEST_ASSERT_EQUAL(TSR_OK, tsr_change_check(&watching, NULL));
     } else {

@@ -156,8 +156,8 @@ static void test_only_watched_cells_count(void)
 {
     struct tsr_change_config watching = config;
     watching.watched_count = 2;
-    watching.watched[0] = (struct tsr_change_rectangle){11, 11, 2, 2}; /* one pixel each of cells 2 and 3 */
-    watching.watched[1] = (struct tsr_change_rectangle){60, 60, 4, 4};
+    watching.watched[0] = (struct tsr_rectangle){11, 11, 2, 2}; /* one pixel each of cells 2 and 3 */
+    watching.watched[1] = (struct tsr_rectangle){60, 60, 4, 4};
     draw_ramp(100, 0, 100);
     settle(&watching);
     for (unsigned i = 0; i < 36; i++) {

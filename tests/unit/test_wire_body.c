@@ -64,6 +64,74 @@ static void test_map(void)
     }
 }
 
+static struct tsr_body_events events_of(unsigned count)
+{
+    struct tsr_body_events events;
+    memset(&events, 0, sizeof events);
+    events.capture_time_us = 0x0807060504030201ull;
+    events.capture_id = 0x0a09;
+    events.count = (uint8_t)count;
+    for (unsigned i = 0; i < count && i < TSR_BODY_EVENTS_MAX; i++) {
+        events.events[i] = (struct tsr_body_event){(uint8_t)i, (uint8_t)(1 + i % 4), (uint16_t)(512 * (i + 1)),
+                                                   (uint16_t)(0x1000 + i)};
+    }
+    return events;
+}
+
+static void test_events(void)
+{
+    const uint8_t first[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 0, 1, 0x00, 0x02, 0x00, 0x10};
+    uint8_t body[TSR_BODY_EVENT_HEADER_LEN + TSR_BODY_EVENTS_MAX * TSR_BODY_EVENT_LEN + 1];
+    struct tsr_body_events read;
+    for (unsigned count = 1; count <= TSR_BODY_EVENTS_MAX; count++) {
+        const struct tsr_body_events events = events_of(count);
+        const size_t whole = TSR_BODY_EVENT_HEADER_LEN + count * TSR_BODY_EVENT_LEN;
+        size_t written = 777;
+        memset(body, 0xee, sizeof body);
+        TEST_ASSERT_EQUAL(TSR_ERR_NOBUF, tsr_body_write_events(&events, body, whole - 1, &written));
+        TEST_ASSERT_EQUAL_HEX8(0xee, body[0]);
+        TEST_ASSERT_EQUAL(777, written);
+        TEST_ASSERT_EQUAL(TSR_OK, tsr_body_write_events(&events, body, whole, &written));
+        TEST_ASSERT_EQUAL(whole, written);
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(first, body, sizeof first);
+        TEST_ASSERT_EQUAL_HEX8(0xee, body[whole]);
+        memset(&read, 0, sizeof read);
+        TEST_ASSERT_EQUAL(TSR_OK, tsr_body_read_events(body, whole, &read));
+        TEST_ASSERT_EQUAL_MEMORY(&events, &read, sizeof read);
+        memset(&read, 0xab, sizeof read);
+        TEST_ASSERT_EQUAL(TSR_ERR_FORMAT, tsr_body_read_events(body, whole - 1, &read));
+        TEST_ASSERT_EQUAL(TSR_ERR_FORMAT, tsr_body_read_events(body, whole + 1, &read));
+        TEST_ASSERT_EQUAL(TSR_ERR_FORMAT, tsr_body_read_events(body, TSR_BODY_EVENT_HEADER_LEN, &read));
+        TEST_ASSERT_EQUAL_HEX16(0xabab, read.capture_id);
+    }
+    struct tsr_body_events events = events_of(0);
+    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_body_write_events(&events, body, sizeof body, &len));
+    events.count = TSR_BODY_EVENTS_MAX + 1;
+    TEST_ASSERT_EQUAL(TSR_ERR_ARG, tsr_body_write_events(&events, body, sizeof body, &len));
+}
+
+static void test_events_refuse_unknown_values(void)
+{
+    uint8_t body[TSR_BODY_EVENT_HEADER_LEN + TSR_BODY_EVENT_LEN];
+    struct tsr_body_events events = events_of(1);
+    struct tsr_body_events read;
+    const struct {
+        uint8_t kind;
+        uint16_t share_q12;
+        enum tsr_status status;
+    } cases[] = {{TSR_EVENT_BEGUN, 0, TSR_OK},
+                 {TSR_EVENT_VANISHED, TSR_EVENT_SHARE_ONE, TSR_OK},
+                 {0, 0, TSR_ERR_FORMAT},
+                 {TSR_EVENT_VANISHED + 1, 0, TSR_ERR_FORMAT},
+                 {TSR_EVENT_ENDED, TSR_EVENT_SHARE_ONE + 1, TSR_ERR_FORMAT}};
+    for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        events.events[0].kind = cases[i].kind;
+        events.events[0].share_q12 = cases[i].share_q12;
+        TEST_ASSERT_EQUAL(TSR_OK, tsr_body_write_events(&events, body, sizeof body, &len));
+        TEST_ASSERT_EQUAL(cases[i].status, tsr_body_read_events(body, sizeof body, &read));
+    }
+}
+
 static struct tsr_body_status status_of_len(unsigned bitmap_len)
 {
     struct tsr_body_status status;
@@ -216,6 +284,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_capture);
     RUN_TEST(test_map);
+    RUN_TEST(test_events);
+    RUN_TEST(test_events_refuse_unknown_values);
     RUN_TEST(test_status_of_every_length);
     RUN_TEST(test_status_fields_out_of_range);
     RUN_TEST(test_every_pattern_of_small_messages);

@@ -16,6 +16,7 @@
 #include "tsr/vision/median.h"
 #include "tsr/vision/quantise.h"
 #include "tsr/vision/similarity.h"
+#include "tsr/vision/zone.h"
 
 #define ROWS_PER_STEP 4u /* ROWS_PER_STEP_DEFAULT of the node */
 #define SETTLE_FRAMES 4u /* of change detection, its default */
@@ -152,6 +153,25 @@ static void run_match(const struct workbench_case *bench, size_t pixels)
     workbench_store("median.out", map, pixels * sizeof *map);
 }
 
+/* The whole map as a zone: a surface visits it three times. */
+static void run_zone(const struct workbench_case *bench)
+{
+    static struct tsr_zone zone;
+    const struct tsr_zone_config config = {.part = {0, 0, bench->width, bench->height}, .kind = TSR_ZONE_SURFACE};
+    enum tsr_status status;
+    workbench_begin();
+    status = tsr_zone_start(&zone, &config, tsr_match_pair_map(pair), bench->width, bench->height);
+    workbench_expect(status == TSR_OK, "zone start");
+    do {
+        status = tsr_zone_run(&zone, ROWS_PER_STEP);
+    } while (status == TSR_AGAIN);
+    struct tsr_zone_result result = tsr_zone_get_result(&zone);
+    workbench_end("zone", (size_t)tsr_zone_rows_done(&zone) * bench->width);
+    workbench_expect(status == TSR_OK, "zone");
+    const uint32_t found[3] = {result.valid, result.counted, result.disparity_q8};
+    workbench_store("zone.out", found, sizeof found);
+}
+
 static void run_other_modes(const struct workbench_case *bench, size_t pixels)
 {
     match_pair(bench, pixels, TSR_MATCH_SAD8, "match_sad8", "match_sad8.out");
@@ -194,7 +214,7 @@ static void run_compare(const struct workbench_case *bench, size_t pixels)
     } while (status == TSR_AGAIN);
     workbench_end("similarity", pixels);
     workbench_expect(status == TSR_OK && tsr_similarity_get_result(&similarity, &result) == TSR_OK, "similarity");
-    const uint32_t found[5] = {result.mse_q8, result.both_count, result.one_count, result.blocks,
+    const uint32_t found[5] = {tsr_similarity_mse_q8(&result), result.both_count, result.one_count, result.blocks,
                                result.different_blocks};
     workbench_store("similarity.out", found, sizeof found);
 }
@@ -238,6 +258,7 @@ void workbench_run(const struct workbench_case *bench)
     workbench_run_picture(bench, left);
     workbench_run_rectify(bench, left);
     run_match(bench, pixels);
+    run_zone(bench);
     run_compare(bench, pixels);
     size_t coded_len = workbench_run_map(bench, tsr_match_pair_map(pair), coded, sizeof coded);
     workbench_run_seals(coded, coded_len);

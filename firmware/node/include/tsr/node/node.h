@@ -12,7 +12,8 @@
  *      ▲ ▲                             │ binocular                     │
  *      │ │                             └──────────► REFERENCE ◄────────┘
  *      │ │                                              │
- *      │ └── similar ── COMPARING ◄─ MEDIAN ◄─ MATCHING ◄
+ *      │ └── similar ── COMPARING ◄─┬─ MEDIAN ◄─ MATCHING ◄
+ *      │                    │       └─ NOTIFYING ◄─ MEASURING ◄─ MEDIAN, if there are depth rules
  *      │                    │ different
  *      └── committed ── SENDING ◄─ SEALING ◄─ ENCODING
  *
@@ -41,6 +42,7 @@
 #include "tsr/net/mac.h"
 #include "tsr/net/route.h"
 #include "tsr/net/sender.h"
+#include "tsr/node/depth_rule.h"
 #include "tsr/vision/change.h"
 #include "tsr/vision/match.h"
 #include "tsr/vision/similarity.h"
@@ -63,6 +65,8 @@ enum tsr_node_phase {
     TSR_PHASE_REFERENCE, /* coding the reference image */
     TSR_PHASE_MATCHING,
     TSR_PHASE_MEDIAN,
+    TSR_PHASE_MEASURING, /* the zones of the depth rules */
+    TSR_PHASE_NOTIFYING, /* an EVENT message is on its way to the sink */
     TSR_PHASE_COMPARING, /* with the last map the sink has; a wing: with the last view the lead has */
     TSR_PHASE_FILTERING, /* a wing: prefiltering its view */
     TSR_PHASE_ENCODING,  /* map, or view on a wing */
@@ -77,6 +81,7 @@ enum tsr_work_kind {
     TSR_WORK_CHANGE,           /* units: pixels of the full frame */
     TSR_WORK_MATCH,            /* rows of matcher work x width x disparities */
     TSR_WORK_MEDIAN,           /* pixels */
+    TSR_WORK_MEASURE,          /* pixels of zones, at each visit */
     TSR_WORK_COMPARE,          /* pixels, quantised and compared */
     TSR_WORK_MAP_ENCODE,       /* pixels */
     TSR_WORK_VIEW_FILTER,      /* pixels, once for prefiltering and once for comparing with the held view */
@@ -107,8 +112,10 @@ struct tsr_node_config {
     struct tsr_change_config change;
     struct tsr_match_config match; /* of a SAD mode; lead and wing of a pair have the same */
     struct tsr_similarity_config similarity;
-    int16_t d0_q4;     /* disparity offset of the pair, px, Q12.4; carried in the map */
-    uint8_t step_log2; /* map's step 2^k / 16 px, 0..4 */
+    const struct tsr_depth_rule *rules; /* [rule_count] kept */
+    uint8_t rule_count;                 /* 0 .. TSR_DEPTH_RULES_MAX */
+    int16_t d0_q4;                      /* disparity offset of the pair, px, Q12.4; carried in the map */
+    uint8_t step_log2;                  /* map's step 2^k / 16 px, 0..4 */
     /* Quantiser of the reference image, 0..63 (tsr/codec/picture.h): 2^(k/8) gray
      * levels in flat parts, 35 for an SSIM of 0.9; TSR_REFERENCE_NONE sends none. */
     uint8_t reference_step;
@@ -141,6 +148,8 @@ struct tsr_node_counters {
     uint32_t maps_sent;          /* committed by the sink */
     uint32_t maps_lost;          /* given up or refused */
     uint32_t map_bytes;          /* sealed, sent once, with reference image */
+    uint32_t events_sent;        /* of depth rules, committed by the sink */
+    uint32_t events_lost;        /* given up, and to be judged again, or refused */
     uint32_t references_omitted; /* would not fit beside the map */
     uint32_t forwarded;          /* fragments handed on */
     uint32_t dropped_route;      /* no next hop, or out of hops */

@@ -38,6 +38,16 @@ struct tsr_capture {
     bool done; /* by __atomic built-ins */
 };
 
+/* Depth rules: what the sink knows, and the EVENT message that tells it more. */
+struct tsr_notice {
+    uint16_t reported[TSR_DEPTH_RULES_MAX]; /* see event.c */
+    uint16_t found[TSR_DEPTH_RULES_MAX];
+    uint8_t rule; /* being measured */
+    bool under_way;
+    struct tsr_body_events body;
+    uint8_t message[TSR_FRAGMENT_PIECE_MAX];
+};
+
 struct tsr_node {
     struct tsr_node_config config;
     struct tsr_node_hal hal;
@@ -81,6 +91,7 @@ struct tsr_node {
 
     struct tsr_change change;
     uint16_t disparities; /* the matcher's D, its default resolved */
+    struct tsr_notice notice;
     struct tsr_reassembly inbox;
     bool inbox_ready; /* complete, being opened or used */
     bool inbox_done;  /* inbox_done_id was accepted */

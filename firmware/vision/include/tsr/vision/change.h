@@ -37,14 +37,6 @@
 
 #define TSR_CHANGE_WATCHED_MAX 4
 
-/* A part of the picture, px: columns x .. x + width - 1, rows y .. y + height - 1. */
-struct tsr_change_rectangle {
-    uint16_t x;
-    uint16_t y;
-    uint16_t width;  /* >= 1, x + width <= the picture's */
-    uint16_t height; /* >= 1, y + height <= the picture's */
-};
-
 /* Zero in a field means the default named beside it. */
 struct tsr_change_config {
     uint16_t width;        /* px, 8 .. TSR_IMAGE_WIDTH_MAX; no default */
@@ -57,8 +49,9 @@ struct tsr_change_config {
                               rectangles' pixels (the picture's if none) / (400 n^2), at least 2 */
     uint8_t settle_frames; /* first frames that only teach, 1 .. 255; default 4 */
     uint8_t watched_count; /* 0 .. TSR_CHANGE_WATCHED_MAX; 0: the whole picture is watched */
-    /* Cells that share no pixel with one of these never count as changed; they still tell how bright it is. */
-    struct tsr_change_rectangle watched[TSR_CHANGE_WATCHED_MAX];
+    /* Not empty and inside the picture. Cells that share no pixel with one of these never count as changed; they still
+     * tell how bright it is. */
+    struct tsr_rectangle watched[TSR_CHANGE_WATCHED_MAX];
 };
 
 struct tsr_change_result {

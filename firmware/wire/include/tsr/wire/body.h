@@ -5,6 +5,8 @@
  *   VIEW    capture id u16 | attempt u8 | coded gray image
  *   MAP     capture time u64 (us) | capture id u16 | reference length u32 |
  *           coded reference image (may be empty) | coded disparity map
+ *   EVENT   capture time u64 (us) | capture id u16 | 1 .. 8 times:
+ *           rule u8 | kind u8 | share u16 (UQ4.12) | disparity u16 (UQ8.8)
  *   STATUS  message id u16 it answers | state u8 |
  *           first u16 | bitmap (bit i of byte j: fragment first + 8 j + i is missing)
  *
@@ -26,6 +28,9 @@
 #define TSR_BODY_WAKE_LEN 3u
 #define TSR_BODY_VIEW_HEADER_LEN 3u
 #define TSR_BODY_MAP_HEADER_LEN 14u
+#define TSR_BODY_EVENT_HEADER_LEN 10u
+#define TSR_BODY_EVENT_LEN 6u  /* each */
+#define TSR_BODY_EVENTS_MAX 8u /* so that an EVENT message is one fragment */
 #define TSR_BODY_STATUS_HEADER_LEN 5u
 /* A STATUS message is one fragment. */
 #define TSR_BODY_STATUS_BITMAP_MAX (TSR_FRAGMENT_PIECE_MAX - TSR_MESSAGE_OVERHEAD_LEN - TSR_BODY_STATUS_HEADER_LEN)
@@ -56,6 +61,30 @@ struct tsr_body_map {
     size_t map_len;
 };
 
+enum tsr_event_kind {
+    TSR_EVENT_BEGUN = 1,    /* a zone has come nearer, or farther, than its rule's limit */
+    TSR_EVENT_ENDED = 2,    /* and is so no more */
+    TSR_EVENT_MEASURED = 3, /* a surface is at this disparity now */
+    TSR_EVENT_VANISHED = 4  /* there is no surface any more */
+};
+
+#define TSR_EVENT_SHARE_ONE 4096u
+#define TSR_EVENT_NO_DISPARITY UINT16_C(0xffff)
+
+struct tsr_body_event {    /* of one depth rule */
+    uint8_t rule;          /* which, counted from 0 in the order of the pair's rules */
+    uint8_t kind;          /* enum tsr_event_kind */
+    uint16_t share_q12;    /* part of the zone's pixels that count, 0 .. TSR_EVENT_SHARE_ONE */
+    uint16_t disparity_q8; /* their mean, px, UQ8.8, without d0; TSR_EVENT_NO_DISPARITY: none counts */
+};
+
+struct tsr_body_events {
+    uint64_t capture_time_us; /* the node's clock */
+    uint16_t capture_id;
+    uint8_t count; /* 1 .. TSR_BODY_EVENTS_MAX */
+    struct tsr_body_event events[TSR_BODY_EVENTS_MAX];
+};
+
 enum tsr_delivery {
     TSR_DELIVERY_MISSING = 1,   /* the bitmap names what has to come again */
     TSR_DELIVERY_COMMITTED = 2, /* on disk (sink) or in use (lead) */
@@ -77,6 +106,10 @@ enum tsr_status tsr_body_read_capture(const uint8_t *bytes, size_t len, struct t
 void tsr_body_write_map_header(uint64_t capture_time_us, uint16_t capture_id, size_t reference_len,
                                uint8_t bytes[TSR_BODY_MAP_HEADER_LEN]);
 enum tsr_status tsr_body_read_map(const uint8_t *bytes, size_t len, struct tsr_body_map *body);
+
+/* TSR_ERR_ARG: count; TSR_ERR_NOBUF: cap. */
+enum tsr_status tsr_body_write_events(const struct tsr_body_events *body, uint8_t *bytes, size_t cap, size_t *len);
+enum tsr_status tsr_body_read_events(const uint8_t *bytes, size_t len, struct tsr_body_events *body);
 
 enum tsr_status tsr_body_write_status(const struct tsr_body_status *body, uint8_t *bytes, size_t cap, size_t *len);
 enum tsr_status tsr_body_read_status(const uint8_t *bytes, size_t len, struct tsr_body_status *body);

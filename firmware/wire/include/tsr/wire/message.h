@@ -24,10 +24,11 @@
 #define TSR_MESSAGE_OVERHEAD_LEN (TSR_MESSAGE_HEADER_LEN + TSR_CCM_TAG_LEN)
 
 enum tsr_message_kind {
-    TSR_MESSAGE_WAKE = 1,  /* lead to wing: capture with me */
-    TSR_MESSAGE_VIEW = 2,  /* wing to lead: my view of that capture */
-    TSR_MESSAGE_MAP = 3,   /* lead or binocular node to sink */
-    TSR_MESSAGE_STATUS = 4 /* receiver of a message to its origin */
+    TSR_MESSAGE_WAKE = 1,   /* lead to wing: capture with me */
+    TSR_MESSAGE_VIEW = 2,   /* wing to lead: my view of that capture */
+    TSR_MESSAGE_MAP = 3,    /* lead or binocular node to sink */
+    TSR_MESSAGE_STATUS = 4, /* receiver of a message to its origin */
+    TSR_MESSAGE_EVENT = 5   /* lead or binocular node to sink: what its depth rules found */
 };
 
 enum tsr_key_use {
