@@ -62,6 +62,27 @@ void set_thresholds(tsr_node_config &config, const SiteThresholds &thresholds)
     config.similarity.min_blocks = static_cast<std::uint16_t>(thresholds.similarity_blocks);
 }
 
+tsr_depth_rule depth_rule(const SitePair &pair, const SiteZone &zone)
+{
+    constexpr double kScaleOne = 256; /* UQ24.8 */
+    constexpr double kMillimetres = 1000;
+    const double limit_q4 = std::ceil(disparity_at(pair, zone.depth_m) * kDisparityOne);
+    tsr_depth_rule rule{};
+    rule.zone.part = {static_cast<std::uint16_t>(zone.part.x), static_cast<std::uint16_t>(zone.part.y),
+                      static_cast<std::uint16_t>(zone.part.width), static_cast<std::uint16_t>(zone.part.height)};
+    rule.begin_px = begin_pixels(zone);
+    if (zone.kind == ZoneKind::changed) {
+        rule.zone.kind = TSR_ZONE_SURFACE;
+        rule.scale_q8 = static_cast<std::uint32_t>(std::lround(pair.focal_px * pair.baseline_mm * kScaleOne));
+        rule.change_mm = static_cast<std::uint16_t>(std::lround(zone.depth_m * kMillimetres));
+    } else {
+        rule.zone.kind = zone.kind == ZoneKind::below ? TSR_ZONE_NEARER : TSR_ZONE_FARTHER;
+        rule.zone.limit_q4 = static_cast<std::uint16_t>(std::clamp(limit_q4, 0.0, double{TSR_DISPARITY_INVALID}));
+        rule.end_px = end_pixels(zone);
+    }
+    return rule;
+}
+
 void set_up_camera(tsr_node_config &config, const SiteNode &node, const SitePair &pair)
 {
     const auto width = static_cast<std::uint16_t>(pair.width);
@@ -111,6 +132,11 @@ std::unique_ptr<NodeSetup> set_up_node(const Site &site, const SiteNode &node, c
             copy_key(keys.pair_key(pair->lead, pair->wing).value(), config.pair_key);
         }
         set_up_camera(config, node, *pair);
+        for (const SiteZone &zone : pair->zones) {
+            setup->rules.push_back(depth_rule(*pair, zone));
+        }
+        config.rules = setup->rules.data();
+        config.rule_count = static_cast<std::uint8_t>(setup->rules.size());
         set_thresholds(config, site.thresholds);
     }
     const char *field = nullptr;

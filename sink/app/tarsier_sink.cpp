@@ -20,6 +20,7 @@
 #include "tsr/sink/export.h"
 #include "tsr/sink/gateway.h"
 #include "tsr/sink/receiver.h"
+#include "tsr/sink/site_event.h"
 
 namespace
 {
@@ -54,6 +55,14 @@ void log_map(const tsr::MapReport &map)
                  map.mse_px2 ? fmt::format(", MSE {:.4f} px^2", *map.mse_px2) : "");
 }
 
+void log_events(const tsr::EventReport &report)
+{
+    for (const tsr::StoredEvent &event : report.events.events) {
+        spdlog::info("event from node {} ({}): {}", report.events.node, report.pair->name,
+                     tsr::event_text(tsr::describe_event(*report.pair, event)));
+    }
+}
+
 /* Everything that can be refused is read and opened before the database is made. */
 struct Entrance {
     tsr::KeyRing keys;
@@ -80,6 +89,7 @@ tsr::SessionNumbers receive(Entrance &entrance, const tsr::Site &site, tsr::Stor
 {
     tsr::Receiver receiver(site, entrance.keys, store);
     receiver.on_map(log_map);
+    receiver.on_events(log_events);
     tsr::LinkServer server(receiver, site.pan_id);
     entrance.gateways->serve(server);
     return {receiver.tally(), server.counts(), receiver.repeated()};
@@ -131,7 +141,8 @@ int run(const Options &options)
                      options.export_only ? tsr::Store::Open::existing : tsr::Store::Open::create);
     const tsr::SessionNumbers session = entrance ? receive(*entrance, site, store) : tsr::SessionNumbers{};
     const tsr::ExportResult result = tsr::export_site(site, store, session, options.out);
-    spdlog::info("{} maps and a cloud of {} points written to {}", result.maps, result.points, options.out.string());
+    spdlog::info("{} maps, {} events and a cloud of {} points written to {}", result.maps, result.events, result.points,
+                 options.out.string());
     return 0;
 }
 

@@ -10,11 +10,13 @@
 
 #include "tsr/host/atomic_file.h"
 #include "tsr/host/colour_map.h"
+#include "tsr/host/csv.h"
 #include "tsr/host/image_file.h"
 #include "tsr/host/input_error.h"
 #include "tsr/host/pfm.h"
 #include "tsr/host/ply.h"
 #include "tsr/sink/geometry.h"
+#include "tsr/sink/site_event.h"
 
 namespace tsr
 {
@@ -100,6 +102,45 @@ Json map_json(const StoredMap &stored)
             {"file", "maps/" + map_name(stored)}};
 }
 
+/* Written side by side: what one has, the other has. */
+struct EventTables {
+    Json json = Json::array();
+    std::string csv = "node,pair,counter,capture_time_us,zone,kind,area_percent,depth_m,x_m,y_m,z_m\n";
+};
+
+void add_event(EventTables &tables, const SitePair &pair, const StoredEvents &message, const StoredEvent &stored)
+{
+    const SiteEvent event = describe_event(pair, stored);
+    Json json{{"node", message.node}, {"counter", message.counter}, {"capture_time_us", message.capture_time_us},
+              {"zone", event.zone},   {"kind", event.kind},         {"area_percent", event.area_percent},
+              {"depth_m", nullptr},   {"position_m", nullptr}};
+    std::string place = ",,,";
+    if (event.depth_m && event.position_m) {
+        const auto &[x, y, z] = *event.position_m;
+        json["depth_m"] = *event.depth_m;
+        json["position_m"] = {x, y, z};
+        place = fmt::format("{:.4f},{:.4f},{:.4f},{:.4f}", *event.depth_m, x, y, z);
+    }
+    tables.json.push_back(std::move(json));
+    tables.csv += fmt::format("{},{},{},{},{},{},{:.2f},{}\n", message.node, csv_field(pair.name), message.counter,
+                              message.capture_time_us, csv_field(event.zone), event.kind, event.area_percent, place);
+}
+
+/* Those whose zone site.toml still has. */
+EventTables event_tables(const Site &site, const Store &store)
+{
+    EventTables tables;
+    store.for_each_events([&](const StoredEvents &message) {
+        const SitePair *pair = site.pair_of(message.node);
+        for (const StoredEvent &event : message.events) {
+            if (pair != nullptr && event.rule < pair->zones.size()) {
+                add_event(tables, *pair, message, event);
+            }
+        }
+    });
+    return tables;
+}
+
 Json session_json(const SessionNumbers &session)
 {
     Json refused = Json::object();
@@ -137,7 +178,9 @@ ExportResult export_site(const Site &site, const Store &store, const SessionNumb
         }
         received.push_back(map_json(stored));
     });
+    EventTables events = event_tables(site, store);
     ExportResult result;
+    result.events = events.json.size();
     result.maps = total.kept + total.dropped;
     result.points = export_cloud(site, store, out / "cloud.ply");
     Json json{{"format", kJsonFormat},
@@ -150,11 +193,13 @@ ExportResult export_site(const Site &site, const Store &store, const SessionNumb
                 {"reference_bytes", total.reference_bytes}}},
               {"cloud_points", result.points},
               {"received", std::move(received)},
+              {"events", std::move(events.json)},
               {"nodes", Json::array()},
               {"session", session_json(session)}};
     for (const SiteNode &node : site.nodes) {
         json["nodes"].push_back(node_json(node, numbers[node.id]));
     }
+    write_file_atomically(out / "events.csv", events.csv);
     write_file_atomically(out / "sink.json", json.dump(2) + "\n");
     return result;
 }

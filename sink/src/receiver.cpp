@@ -1,9 +1,10 @@
-/* From fragments to stored maps. SPDX-License-Identifier: Apache-2.0 */
+/* From fragments to stored maps and events. SPDX-License-Identifier: Apache-2.0 */
 #include "tsr/sink/receiver.h"
 
 #include <algorithm>
 #include <stdexcept>
 
+#include "event_message.h"
 #include "map_message.h"
 #include "tsr/host/aes.h"
 
@@ -76,6 +77,9 @@ std::vector<std::vector<std::uint8_t>> Receiver::receive(std::span<const std::ve
         }
         if (verdict.report && on_disk && report_) {
             report_(*verdict.report);
+        }
+        if (verdict.events && on_disk && report_events_) {
+            report_events_(*verdict.events);
         }
     }
     return answers;
@@ -220,7 +224,7 @@ std::optional<Cause> Receiver::open_message(Origin &origin, Assembly &assembly, 
 {
     const tsr_reassembly &whole = assembly.state;
     if (tsr_message_parse(whole.message, whole.message_len, whole.origin, whole.destination, &header) != TSR_OK ||
-        header.kind != TSR_MESSAGE_MAP || header.key_use != TSR_KEY_NODE ||
+        (header.kind != TSR_MESSAGE_MAP && header.kind != TSR_MESSAGE_EVENT) || header.key_use != TSR_KEY_NODE ||
         static_cast<std::uint16_t>(header.counter) != whole.message_id) {
         return Cause::message_format;
     }
@@ -238,6 +242,42 @@ std::optional<Cause> Receiver::store_message(const Origin &origin, const tsr_mes
     if (origin.pair == nullptr) {
         return Cause::no_pair;
     }
+    return header.kind == TSR_MESSAGE_EVENT ? store_events(origin, header, body, verdict)
+                                            : store_map(origin, header, body, verdict);
+}
+
+void Receiver::begin_storing(Verdict &verdict)
+{
+    if (!in_transaction_) {
+        store_.begin();
+        in_transaction_ = true;
+    }
+    verdict.stored = true;
+}
+
+std::optional<Cause> Receiver::store_events(const Origin &origin, const tsr_message_header &header,
+                                            std::span<const std::uint8_t> body, Verdict &verdict)
+{
+    auto message = read_event_message(body, *origin.pair);
+    if (const Cause *cause = std::get_if<Cause>(&message)) {
+        return *cause;
+    }
+    auto &stored = std::get<StoredEvents>(message);
+    stored.node = header.origin;
+    stored.counter = header.counter;
+    begin_storing(verdict);
+    switch (store_.insert(stored)) {
+    case Insertion::counter_reused: return Cause::counter_reused;
+    case Insertion::already_stored: repeated_++; return std::nullopt;
+    case Insertion::stored: break;
+    }
+    verdict.events = EventReport{origin.pair, std::move(stored)};
+    return std::nullopt;
+}
+
+std::optional<Cause> Receiver::store_map(const Origin &origin, const tsr_message_header &header,
+                                         std::span<const std::uint8_t> body, Verdict &verdict)
+{
     auto message = read_map_message(body, *origin.pair);
     if (const Cause *cause = std::get_if<Cause>(&message)) {
         return *cause;
@@ -245,11 +285,7 @@ std::optional<Cause> Receiver::store_message(const Origin &origin, const tsr_mes
     auto &[map, stored] = std::get<MapMessage>(message);
     stored.node = header.origin;
     stored.counter = header.counter;
-    if (!in_transaction_) {
-        store_.begin();
-        in_transaction_ = true;
-    }
-    verdict.stored = true;
+    begin_storing(verdict);
     if (store_.find(stored.node, stored.counter)) {
         repeated_++;
     } else {

@@ -29,6 +29,19 @@ constexpr const char *kSchema = "CREATE TABLE map ("
                                 "INSERT INTO reservation VALUES (1);"
                                 "CREATE TABLE site (pan_id INTEGER NOT NULL);";
 
+/* Since version 2. */
+constexpr const char *kEventSchema = "CREATE TABLE event ("
+                                     " arrival INTEGER PRIMARY KEY AUTOINCREMENT,"
+                                     " node INTEGER NOT NULL, counter INTEGER NOT NULL,"
+                                     " capture_time_us INTEGER NOT NULL, capture_id INTEGER NOT NULL,"
+                                     " rule INTEGER NOT NULL, kind INTEGER NOT NULL,"
+                                     " share_q12 INTEGER NOT NULL, disparity_q8 INTEGER NOT NULL,"
+                                     " UNIQUE (node, counter, rule));";
+constexpr std::int64_t kVersionWithoutEvents = 1;
+
+constexpr const char *kEventColumns =
+    "SELECT node, counter, capture_time_us, capture_id, rule, kind, share_q12, disparity_q8 FROM event ";
+
 constexpr const char *kMapColumns =
     "SELECT node, counter, capture_time_us, capture_id, kept, mse_px2, coded_map, coded_reference FROM map ";
 
@@ -48,21 +61,53 @@ StoredMap row_of(const Statement &statement)
     return map;
 }
 
+/* One more event of a message, begun if there is none. */
+void add_row(const Statement &statement, std::optional<StoredEvents> &message)
+{
+    if (!message) {
+        message.emplace();
+        message->node = static_cast<std::uint16_t>(statement.integer(0));
+        message->counter = static_cast<std::uint32_t>(statement.integer(1));
+        message->capture_time_us = std::bit_cast<std::uint64_t>(statement.integer(2));
+        message->capture_id = static_cast<std::uint16_t>(statement.integer(3));
+    }
+    message->events.push_back(
+        {static_cast<std::uint8_t>(statement.integer(4)), static_cast<std::uint8_t>(statement.integer(5)),
+         static_cast<std::uint16_t>(statement.integer(6)), static_cast<std::uint16_t>(statement.integer(7))});
+}
+
 std::int64_t single_integer(const Connection &connection, const char *sql)
 {
     Statement statement(connection, sql);
     return statement.step() ? statement.integer(0) : 0;
 }
 
+void set_version(const Connection &connection)
+{
+    connection.execute(("PRAGMA user_version = " + std::to_string(Store::kSchemaVersion)).c_str());
+}
+
 void create_schema(const Connection &connection, std::uint16_t pan_id)
 {
     connection.execute("BEGIN IMMEDIATE");
     connection.execute(kSchema);
+    connection.execute(kEventSchema);
     Statement site(connection, "INSERT INTO site VALUES (?1)");
     site.bind(1, std::int64_t{pan_id}).step();
     connection.execute(("PRAGMA application_id = " + std::to_string(kApplicationId)).c_str());
-    connection.execute(("PRAGMA user_version = " + std::to_string(Store::kSchemaVersion)).c_str());
+    set_version(connection);
     connection.execute("COMMIT");
+}
+
+/* All of it or nothing: a power cut leaves a file of the old version. */
+void bring_up_to_date(const Connection &connection)
+{
+    if (single_integer(connection, "PRAGMA user_version") == kVersionWithoutEvents) {
+        connection.execute("BEGIN IMMEDIATE");
+        connection.execute(kEventSchema);
+        set_version(connection);
+        connection.execute("COMMIT");
+    }
 }
 
 void check_schema(const Connection &connection, const std::filesystem::path &file, std::uint16_t pan_id)
@@ -71,7 +116,7 @@ void check_schema(const Connection &connection, const std::filesystem::path &fil
         throw InputError(file.string(), "application_id", "a database, but not a Tarsier sink's");
     }
     const std::int64_t version = single_integer(connection, "PRAGMA user_version");
-    if (version != Store::kSchemaVersion) {
+    if (version != Store::kSchemaVersion && version != kVersionWithoutEvents) {
         throw InputError(file.string(), "user_version",
                          "schema version " + std::to_string(version) + ", this build knows " +
                              std::to_string(Store::kSchemaVersion));
@@ -99,6 +144,8 @@ Connection &prepare(Connection &connection, const std::filesystem::path &file, s
     connection.execute("PRAGMA synchronous = FULL");
     if (is_new) {
         create_schema(connection, pan_id);
+    } else {
+        bring_up_to_date(connection);
     }
     return connection;
 }
@@ -113,7 +160,15 @@ struct Store::Database {
           find(ready, (std::string(kMapColumns) + "WHERE node = ?1 AND counter = ?2").c_str()),
           last_kept(ready,
                     (std::string(kMapColumns) + "WHERE node = ?1 AND kept = 1 ORDER BY arrival DESC LIMIT 1").c_str()),
-          newest(ready, "SELECT counter FROM map WHERE node = ?1 ORDER BY arrival DESC LIMIT ?2"),
+          insert_event(ready, "INSERT INTO event (node, counter, capture_time_us, capture_id, rule, kind, share_q12,"
+                              " disparity_q8) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)"),
+          find_events(ready,
+                      (std::string(kEventColumns) + "WHERE node = ?1 AND counter = ?2 ORDER BY arrival").c_str()),
+          all_events(ready, (std::string(kEventColumns) + "ORDER BY arrival").c_str()),
+          newest(ready, "SELECT counter FROM (SELECT counter FROM map WHERE node = ?1 ORDER BY arrival DESC LIMIT ?2)"
+                        " UNION SELECT counter FROM"
+                        " (SELECT counter FROM event WHERE node = ?1 GROUP BY counter ORDER BY max(arrival) DESC"
+                        " LIMIT ?2) ORDER BY counter DESC"),
           all(ready, (std::string(kMapColumns) + "ORDER BY node, counter").c_str()),
           reserve(ready, "UPDATE reservation SET sealing_counter = sealing_counter + ?1 RETURNING sealing_counter")
     {
@@ -124,6 +179,9 @@ struct Store::Database {
     Statement insert;
     Statement find;
     Statement last_kept;
+    Statement insert_event;
+    Statement find_events;
+    Statement all_events;
     Statement newest;
     Statement all;
     Statement reserve;
@@ -167,6 +225,9 @@ Insertion Store::insert(const StoredMap &map)
                           earlier->coded_map == map.coded_map && earlier->coded_reference == map.coded_reference;
         return same ? Insertion::already_stored : Insertion::counter_reused;
     }
+    if (find_events(map.node, map.counter)) {
+        return Insertion::counter_reused;
+    }
     Statement &statement = database_->insert;
     statement.reset();
     statement.bind(1, std::int64_t{map.node})
@@ -182,6 +243,62 @@ Insertion Store::insert(const StoredMap &map)
     statement.step();
     statement.reset();
     return Insertion::stored;
+}
+
+Insertion Store::insert(const StoredEvents &message)
+{
+    if (const auto earlier = find_events(message.node, message.counter)) {
+        return *earlier == message ? Insertion::already_stored : Insertion::counter_reused;
+    }
+    if (find(message.node, message.counter)) {
+        return Insertion::counter_reused;
+    }
+    Statement &statement = database_->insert_event;
+    for (const StoredEvent &event : message.events) {
+        statement.reset();
+        statement.bind(1, std::int64_t{message.node})
+            .bind(2, std::int64_t{message.counter})
+            .bind(3, std::bit_cast<std::int64_t>(message.capture_time_us))
+            .bind(4, std::int64_t{message.capture_id})
+            .bind(5, std::int64_t{event.rule})
+            .bind(6, std::int64_t{event.kind})
+            .bind(7, std::int64_t{event.share_q12})
+            .bind(8, std::int64_t{event.disparity_q8})
+            .step();
+    }
+    statement.reset();
+    return Insertion::stored;
+}
+
+std::optional<StoredEvents> Store::find_events(std::uint16_t node, std::uint32_t counter) const
+{
+    Statement &statement = database_->find_events;
+    statement.reset();
+    statement.bind(1, std::int64_t{node}).bind(2, std::int64_t{counter});
+    std::optional<StoredEvents> message;
+    while (statement.step()) {
+        add_row(statement, message);
+    }
+    statement.reset();
+    return message;
+}
+
+void Store::for_each_events(const std::function<void(const StoredEvents &)> &visit) const
+{
+    Statement &statement = database_->all_events;
+    statement.reset();
+    std::optional<StoredEvents> message;
+    while (statement.step()) { /* the events of a message arrived one after the other */
+        if (message && (message->node != statement.integer(0) || message->counter != statement.integer(1))) {
+            visit(*message);
+            message.reset();
+        }
+        add_row(statement, message);
+    }
+    statement.reset();
+    if (message) {
+        visit(*message);
+    }
 }
 
 std::optional<StoredMap> Store::find(std::uint16_t node, std::uint32_t counter) const

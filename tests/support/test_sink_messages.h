@@ -138,6 +138,28 @@ inline std::vector<Bytes> fragments_of(const Bytes &message, std::uint16_t origi
     return result;
 }
 
+inline Bytes event_body(const std::vector<tsr_body_event> &events, std::uint64_t capture_time_us = 1000)
+{
+    tsr_body_events body{};
+    body.capture_time_us = capture_time_us;
+    body.capture_id = 7;
+    body.count = static_cast<std::uint8_t>(events.size());
+    std::copy(events.begin(), events.end(), body.events);
+    Bytes bytes(TSR_FRAGMENT_PIECE_MAX - TSR_MESSAGE_OVERHEAD_LEN);
+    std::size_t len = 0;
+    require_ok(tsr_body_write_events(&body, bytes.data(), bytes.size(), &len));
+    bytes.resize(len);
+    return bytes;
+}
+
+/* An EVENT message from node: one fragment. */
+inline std::vector<Bytes> event_fragments(const KeyRing &keys, std::uint16_t node, std::uint32_t counter,
+                                          const Bytes &body)
+{
+    const tsr_message_header header{TSR_MESSAGE_EVENT, TSR_KEY_NODE, node, 0, counter};
+    return fragments_of(seal(header, *keys.node_key(node), body), node, static_cast<std::uint16_t>(counter));
+}
+
 /* A MAP message from node, whole. */
 inline std::vector<Bytes> map_fragments(const KeyRing &keys, std::uint16_t node, std::uint32_t counter,
                                         const Bytes &body)

@@ -86,6 +86,76 @@ TEST(SinkStore, OrdersByArrivalAndByKey)
     EXPECT_FALSE(store.last_kept(9).has_value());
 }
 
+StoredEvents events_of(std::uint16_t node, std::uint32_t counter, std::uint8_t count)
+{
+    StoredEvents message;
+    message.node = node;
+    message.counter = counter;
+    message.capture_time_us = ~std::uint64_t{0} - counter;
+    message.capture_id = 65535;
+    for (std::uint8_t i = 0; i < count; i++) {
+        message.events.push_back({i, 2, 4096, static_cast<std::uint16_t>(65535 - i)});
+    }
+    return message;
+}
+
+std::vector<StoredEvents> events_in(const Store &store)
+{
+    std::vector<StoredEvents> all;
+    store.for_each_events([&](const StoredEvents &message) { all.push_back(message); });
+    return all;
+}
+
+TEST(SinkStore, KeepsEventsInTheOrderOfArrival)
+{
+    const Folder folder;
+    const std::vector<StoredEvents> wanted = {events_of(5, 0xffffffff, 8), events_of(3, 9, 1), events_of(3, 4, 2)};
+    {
+        Store store(folder / "a.db", 1);
+        store.begin();
+        for (const StoredEvents &message : wanted) {
+            EXPECT_EQ(store.insert(message), Insertion::stored);
+        }
+        store.commit();
+        EXPECT_EQ(store.insert(wanted[0]), Insertion::already_stored);
+        EXPECT_EQ(store.insert(events_of(5, 0xffffffff, 7)), Insertion::counter_reused);
+    }
+    const Store store(folder / "a.db", 1);
+    EXPECT_EQ(events_in(store), wanted);
+    EXPECT_EQ(store.find_events(3, 4), wanted[2]);
+    EXPECT_FALSE(store.find_events(3, 5).has_value());
+}
+
+/* A counter is one message's, whatever its kind. */
+TEST(SinkStore, MapsAndEventsShareTheirCounters)
+{
+    const Folder folder;
+    Store store(folder / "a.db", 1);
+    store.insert(map_of(3, 7, 1));
+    store.insert(events_of(3, 8, 8));
+    store.insert(map_of(3, 9, 2));
+    store.insert(events_of(4, 20, 1));
+    EXPECT_EQ(store.insert(events_of(3, 7, 1)), Insertion::counter_reused);
+    EXPECT_EQ(store.insert(map_of(3, 8, 1)), Insertion::counter_reused);
+    EXPECT_EQ(store.newest_counters(3, 2), (std::vector<std::uint32_t>{9, 8, 7}));
+    EXPECT_EQ(store.newest_counters(3, 1), (std::vector<std::uint32_t>{9, 8}));
+}
+
+/* A file that an earlier build wrote loses nothing and can hold events. */
+TEST(SinkStore, AFileWithoutEventsIsBroughtUpToDate)
+{
+    const Folder folder;
+    {
+        Store store(folder / "a.db", 1);
+        store.insert(map_of(3, 7, 1));
+    }
+    execute(folder / "a.db", "DROP TABLE event; PRAGMA user_version = 1");
+    Store store(folder / "a.db", 1);
+    EXPECT_TRUE(store.find(3, 7).has_value());
+    EXPECT_EQ(store.insert(events_of(3, 8, 2)), Insertion::stored);
+    EXPECT_EQ(events_in(store).size(), 1u);
+}
+
 TEST(SinkStore, RollbackForgets)
 {
     const Folder folder;
@@ -144,8 +214,8 @@ TEST(SinkStore, RefusesOtherFiles)
         Store store(folder / "a.db", 0xbeef);
     }
     EXPECT_REFUSED(Store(folder / "a.db", 0xcafe), "pan_id: holds the maps of PAN 48879, the site's is 51966");
-    execute(folder / "a.db", "PRAGMA user_version = 2");
-    EXPECT_REFUSED(Store(folder / "a.db", 0xbeef), "schema version 2, this build knows 1");
+    execute(folder / "a.db", "PRAGMA user_version = 3");
+    EXPECT_REFUSED(Store(folder / "a.db", 0xbeef), "schema version 3, this build knows 2");
 }
 
 } // namespace

@@ -16,19 +16,6 @@ namespace
 
 constexpr std::size_t kNameMax = 64;
 
-std::string fault_in_name(const std::string &name)
-{
-    if (name.empty() || name.size() > kNameMax) {
-        return "has " + std::to_string(name.size()) + " bytes, not 1.." + std::to_string(kNameMax);
-    }
-    for (const char c : name) {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-            return "has a control character";
-        }
-    }
-    return "";
-}
-
 using NodeIndex = std::map<std::uint16_t, const SiteNode *>;
 
 NodeIndex index_nodes(const Site &site)
@@ -164,13 +151,8 @@ void check_watch(const Site &site, const SiteNode &node, const SitePair &pair)
                     std::to_string(node.watch.size()) + " rectangles, not at most " + std::to_string(kWatchMax));
     }
     for (const SiteRectangle &area : node.watch) {
-        if (area.x < 0 || area.y < 0 || area.width < 1 || area.height < 1 || area.x > pair.width - area.width ||
-            area.y > pair.height - area.height) {
-            refuse_node(site, node, "watch",
-                        "[" + std::to_string(area.x) + ", " + std::to_string(area.y) + ", " +
-                            std::to_string(area.width) + ", " + std::to_string(area.height) +
-                            "] is not a rectangle x, y, width, height inside the pair's " + std::to_string(pair.width) +
-                            "x" + std::to_string(pair.height));
+        if (const std::string fault = fault_in_rectangle(area, pair); !fault.empty()) {
+            refuse_node(site, node, "watch", fault);
         }
     }
 }
@@ -303,6 +285,30 @@ void check_settings(const Site &site)
 
 } // namespace
 
+std::string fault_in_name(const std::string &name)
+{
+    if (name.empty() || name.size() > kNameMax) {
+        return "has " + std::to_string(name.size()) + " bytes, not 1.." + std::to_string(kNameMax);
+    }
+    for (const char c : name) {
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+            return "has a control character";
+        }
+    }
+    return "";
+}
+
+std::string fault_in_rectangle(const SiteRectangle &part, const SitePair &pair)
+{
+    if (part.x >= 0 && part.y >= 0 && part.width >= 1 && part.height >= 1 && part.x <= pair.width - part.width &&
+        part.y <= pair.height - part.height) {
+        return "";
+    }
+    return "[" + std::to_string(part.x) + ", " + std::to_string(part.y) + ", " + std::to_string(part.width) + ", " +
+           std::to_string(part.height) + "] is not a rectangle x, y, width, height inside the pair's " +
+           std::to_string(pair.width) + "x" + std::to_string(pair.height);
+}
+
 void refuse_site(const Site &site, int line, const std::string &field, const std::string &reason)
 {
     const std::string file = site.file.empty() ? "site" : site.file.string();
@@ -327,6 +333,7 @@ void check_site(const Site &site)
     check_tree(site, index);
     check_pairs(site, index);
     check_faults(site);
+    check_zones(site);
 }
 
 } // namespace tsr

@@ -19,12 +19,18 @@ namespace tsr
 [[noreturn]] void refuse_pair(const Site &site, const SitePair &pair, const std::string &field,
                               const std::string &reason);
 
+/* What is wrong, or nothing. */
+std::string fault_in_name(const std::string &name);
+std::string fault_in_rectangle(const SiteRectangle &part, const SitePair &pair);
+
 /* The cameras of a pair: rotations that are rotations, a right camera that
  * stands where the baseline says and looks the same way. Throws InputError. */
 void check_pair_geometry(const Site &site, const SitePair &pair);
 
 /* Faults of nodes that exist, can have them and live. Throws InputError. */
 void check_faults(const Site &site);
+/* Zones inside their pictures, with limits that their pair can measure. Throws InputError. */
+void check_zones(const Site &site);
 
 } // namespace tsr
 

@@ -189,6 +189,7 @@ Site load_site(const std::filesystem::path &file)
         site.pairs.push_back(read_pair(fields));
     }
     site.faults = read_faults(top);
+    place_zones(site, read_zones(top, false));
     top.refuse_unknown();
     check_site(site);
     return site;

@@ -147,6 +147,19 @@ std::string pair_text(const SitePair &pair)
     return text;
 }
 
+std::string zone_text(const SiteZone &zone)
+{
+    const SiteRectangle &part = zone.part;
+    std::string text = "\n[[zone]]\n";
+    text += line("pair", quoted(zone.pair));
+    text += line("name", quoted(zone.name));
+    text += line("rectangle",
+                 list(std::array<double, 4>{double(part.x), double(part.y), double(part.width), double(part.height)}));
+    text += line(zone_field(zone.kind), number(zone.depth_m));
+    text += line("area_percent", number(zone.area_percent));
+    return zone.kind == ZoneKind::changed ? text : text + line("hysteresis_percent", number(zone.hysteresis_percent));
+}
+
 /* What a kind does not have is left out: it would be refused. */
 std::string fault_text(const SiteFault &fault)
 {
@@ -181,6 +194,11 @@ void write_site(const std::filesystem::path &file, const Site &site)
     }
     for (const SitePair &pair : site.pairs) {
         text += pair_text(pair);
+    }
+    for (const SitePair &pair : site.pairs) {
+        for (const SiteZone &zone : pair.zones) {
+            text += zone_text(zone);
+        }
     }
     for (const SiteFault &fault : site.faults) {
         text += fault_text(fault);

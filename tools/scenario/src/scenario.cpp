@@ -166,6 +166,7 @@ Scenario load_scenario(const std::filesystem::path &file, const std::vector<std:
     read_table(top, "thresholds", read_thresholds, scenario.thresholds);
     read_table(top, "battery", read_battery, scenario.battery);
     scenario.faults = read_faults(top);
+    scenario.zones = read_zones(top, true);
     top.refuse_unknown();
     refuse_late_faults(scenario);
     return scenario;

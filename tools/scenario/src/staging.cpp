@@ -11,6 +11,7 @@
 #include "impossible.h"
 #include "tree.h"
 #include "tsr/host/input_error.h"
+#include "tsr/host/site_fields.h"
 
 namespace tsr
 {
@@ -142,6 +143,7 @@ Staging stage_scenario(const Scenario &scenario)
     site.battery = scenario.battery;
     site.faults = scenario.faults;
     place_pairs(staging, scenario);
+    place_zones(site, scenario.zones);
     refuse_impossible(scenario, staging);
     join_tree(site, kReachM);
     check_site(site);

@@ -20,7 +20,8 @@ namespace tsr
 
 struct NodeSetup {
     tsr_node_config config{};
-    std::vector<tsr_route> routes; /* config.routes points into it */
+    std::vector<tsr_route> routes;     /* config.routes points into it */
+    std::vector<tsr_depth_rule> rules; /* and config.rules into this */
 };
 
 /* Throws InputError naming the pair's field the firmware refuses. The result is

@@ -6,7 +6,8 @@
  *   maps/NODE-COUNTER.pfm           each map, restored, disparity in px, +infinity = no match
  *   maps/NODE-COUNTER.png           the same in colours (tsr/host/colour_map.h)
  *   maps/NODE-COUNTER-reference.png its reference image, if one came
- *   sink.json                       numbers: per node and pair, and refusals by cause
+ *   events.csv                      one line per event of a depth rule, in the order of arrival
+ *   sink.json                       numbers: per node and pair, events, and refusals by cause
  *
  * Cloud, PFM and PNG are of restored maps (tsr/codec/map_restore.h); the maps as sent are in the store.
  * NODE has five digits and COUNTER ten, so names sort as numbers do.
@@ -37,6 +38,7 @@ struct SessionNumbers {
 
 struct ExportResult {
     std::size_t maps = 0;
+    std::size_t events = 0;
     std::size_t points = 0; /* in cloud.ply */
 };
 

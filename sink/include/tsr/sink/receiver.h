@@ -1,5 +1,5 @@
 /*
- * From fragments to stored maps: what the sink does with each UPLINK, without
+ * From fragments to stored maps and events: what the sink does with each UPLINK, without
  * sockets and without a clock, so that equal input gives equal answers.
  *
  *   fragment ─► reassembly ─► open (node key) ─► decode ─► judge ─► insert ─┐
@@ -40,6 +40,12 @@ extern "C" {
 namespace tsr
 {
 
+/* One message of events that was committed, for the log. */
+struct EventReport {
+    const SitePair *pair = nullptr;
+    StoredEvents events;
+};
+
 /* One map that was committed, for the log. */
 struct MapReport {
     std::uint16_t node = 0;
@@ -60,6 +66,7 @@ class Receiver
 
     /* Called once for each map after its commit. */
     void on_map(std::function<void(const MapReport &)> report) { report_ = std::move(report); }
+    void on_events(std::function<void(const EventReport &)> report) { report_events_ = std::move(report); }
 
     /*
      * Fragments as they came, all committed together. One result each, in the
@@ -94,6 +101,7 @@ class Receiver
         std::optional<tsr_body_status> status;
         bool stored = false; /* the status promises a commit of this batch */
         std::optional<MapReport> report;
+        std::optional<EventReport> events;
     };
 
     Verdict judge_fragment(const std::vector<std::uint8_t> &bytes);
@@ -103,6 +111,11 @@ class Receiver
                                       std::span<const std::uint8_t> &body);
     std::optional<Cause> store_message(const Origin &origin, const tsr_message_header &header,
                                        std::span<const std::uint8_t> body, Verdict &verdict);
+    std::optional<Cause> store_map(const Origin &origin, const tsr_message_header &header,
+                                   std::span<const std::uint8_t> body, Verdict &verdict);
+    std::optional<Cause> store_events(const Origin &origin, const tsr_message_header &header,
+                                      std::span<const std::uint8_t> body, Verdict &verdict);
+    void begin_storing(Verdict &verdict);
     bool commit(std::vector<Verdict> &verdicts);
     std::vector<std::uint8_t> seal_status(std::uint16_t node, const tsr_body_status &status);
     void remember_stored(Origin &origin, std::uint16_t node) const;
@@ -113,6 +126,7 @@ class Receiver
     std::map<std::uint16_t, Origin> origins_;
     Tally tally_;
     std::function<void(const MapReport &)> report_;
+    std::function<void(const EventReport &)> report_events_;
     std::uint64_t repeated_ = 0;
     std::uint64_t clock_ = 0; /* counts fragments: the order of last use */
     bool in_transaction_ = false;

@@ -4,6 +4,7 @@
  * neither a kill nor a power cut loses anything acknowledged.
  *
  *   map          one row per message, unique by (node, counter)
+ *   event        one row per event of a depth rule, several may share a message
  *   reservation  the sink's own sealing counter, reserved 1000 ahead: a counter
  *                is handed out only after its block was committed, and a new
  *                process begins with the next block, so no nonce comes twice
@@ -45,6 +46,23 @@ struct StoredMap {
     std::vector<std::uint8_t> coded_reference; /* empty: none came */
 };
 
+struct StoredEvent {
+    std::uint8_t rule = 0; /* of the pair's zones, in the order of site.toml */
+    std::uint8_t kind = 0; /* enum tsr_event_kind */
+    std::uint16_t share_q12 = 0;
+    std::uint16_t disparity_q8 = 0; /* px, without d0; TSR_EVENT_NO_DISPARITY: none */
+    bool operator==(const StoredEvent &) const = default;
+};
+
+struct StoredEvents { /* of one message, tsr/wire/body.h */
+    std::uint16_t node = 0;
+    std::uint32_t counter = 0;
+    std::uint64_t capture_time_us = 0; /* the node's clock */
+    std::uint16_t capture_id = 0;
+    std::vector<StoredEvent> events;
+    bool operator==(const StoredEvents &) const = default;
+};
+
 enum class Insertion {
     stored,
     already_stored, /* the same message came before */
@@ -54,7 +72,7 @@ enum class Insertion {
 class Store
 {
   public:
-    static constexpr int kSchemaVersion = 1;
+    static constexpr int kSchemaVersion = 2; /* 1 had no events; such a file is brought up to date */
     static constexpr std::uint32_t kReservedAhead = 1000;
 
     enum class Open {
@@ -75,11 +93,15 @@ class Store
     void rollback(); /* nothing since begin() stays; never throws */
 
     Insertion insert(const StoredMap &map);
+    Insertion insert(const StoredEvents &message);
     std::optional<StoredMap> find(std::uint16_t node, std::uint32_t counter) const;
+    std::optional<StoredEvents> find_events(std::uint16_t node, std::uint32_t counter) const;
     /* The newest kept map of a node, by arrival. */
     std::optional<StoredMap> last_kept(std::uint16_t node) const;
-    /* Counters of a node's newest maps by arrival, newest first. */
+    /* Counters of a node's newest maps and of its newest event messages, so many of each, highest first. */
     std::vector<std::uint32_t> newest_counters(std::uint16_t node, int count) const;
+    /* Every message of events, in the order of arrival. */
+    void for_each_events(const std::function<void(const StoredEvents &)> &visit) const;
     /* Every map, ordered by node and counter. */
     void for_each(const std::function<void(const StoredMap &)> &visit) const;
 

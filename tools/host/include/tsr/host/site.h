@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "tsr/host/fault.h"
+#include "tsr/host/zone.h"
 
 namespace tsr
 {
@@ -83,13 +84,6 @@ struct SiteBattery {
 
 constexpr std::size_t kWatchMax = 4; /* rectangles */
 
-struct SiteRectangle { /* px of the left camera's picture */
-    int x = 0;
-    int y = 0;
-    int width = 0;
-    int height = 0;
-};
-
 struct SiteNode {
     std::uint16_t id = kNodeNone;
     std::string name; /* "node <id>" if the file gives none */
@@ -125,6 +119,7 @@ struct SitePair {
     double step_px = 0.5;        /* the map's disparity step: 1/16, 1/8, 1/4, 1/2 or 1 */
     bool reference_image = true; /* send the gray left image that colours the map */
     int reference_step = 35;     /* its quantiser, 0 .. 63; 8 more double the steps of gray */
+    std::vector<SiteZone> zones; /* in the order of the file; a node names them by it */
     std::filesystem::path truth; /* folder of PFM ground truth, for reports; may be empty */
     int line = 0;
 };

@@ -19,6 +19,10 @@ void read_thresholds(TomlFields &fields, SiteThresholds &limits);
 void read_battery(TomlFields &fields, SiteBattery &battery);
 /* All [[fault]] tables of a file; whether their nodes can have them, check_site() tells. */
 std::vector<SiteFault> read_faults(TomlFields &top);
+/* All [[zone]] tables; of_any_pair: one that names no pair is every pair's. */
+std::vector<SiteZone> read_zones(TomlFields &top, bool of_any_pair);
+/* Gives each pair its own. Throws InputError for a pair that does not exist; check_site() looks at the rest. */
+void place_zones(Site &site, const std::vector<SiteZone> &zones);
 
 } // namespace tsr
 

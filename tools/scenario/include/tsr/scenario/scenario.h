@@ -55,6 +55,7 @@ struct Scenario {
     SiteThresholds thresholds;
     SiteBattery battery;
     std::vector<SiteFault> faults; /* of nodes as stage_scenario() numbers them */
+    std::vector<SiteZone> zones;   /* of pairs as it names them; of every pair if they name none */
 };
 
 /* Is it a scenario, not a site? By its having a [scene]. Throws InputError if it is no TOML. */
