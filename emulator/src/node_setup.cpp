@@ -83,6 +83,15 @@ tsr_depth_rule depth_rule(const SitePair &pair, const SiteZone &zone)
     return rule;
 }
 
+/* The shortest period of a pair's zones is that of all. */
+void note_period(tsr_node_config &config, const SiteZone &zone)
+{
+    const auto period_us = static_cast<std::uint32_t>(std::lround(zone.every_s * 1e6));
+    if (period_us > 0 && (config.measure_period_us == 0 || period_us < config.measure_period_us)) {
+        config.measure_period_us = period_us;
+    }
+}
+
 void set_up_camera(tsr_node_config &config, const SiteNode &node, const SitePair &pair)
 {
     const auto width = static_cast<std::uint16_t>(pair.width);
@@ -134,6 +143,7 @@ std::unique_ptr<NodeSetup> set_up_node(const Site &site, const SiteNode &node, c
         set_up_camera(config, node, *pair);
         for (const SiteZone &zone : pair->zones) {
             setup->rules.push_back(depth_rule(*pair, zone));
+            note_period(config, zone);
         }
         config.rules = setup->rules.data();
         config.rule_count = static_cast<std::uint8_t>(setup->rules.size());

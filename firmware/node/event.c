@@ -48,10 +48,24 @@ static void start_zone(struct tsr_node *node)
                          tsr_match_pair_map(node->pair), match->width, match->height);
 }
 
-void tsr_node_start_measuring(struct tsr_node *node)
+/* The map itself goes on, unless it was made for the rules alone: if it is worth one, another is made later. */
+static void go_on(struct tsr_node *node, uint64_t now_us)
 {
-    if (node->config.rule_count == 0) {
+    if (node->measures_only) {
+        node->counters.maps_measured++;
+        node->recapture = node->recapture || node->map_under_way || node->notice.under_way;
+        tsr_node_rest(node, now_us);
+    } else {
         enter(node, TSR_PHASE_COMPARING);
+    }
+}
+
+void tsr_node_start_measuring(struct tsr_node *node, uint64_t now_us)
+{
+    if (node->config.rule_count == 0 || node->notice.under_way) {
+        /* What the sink knows is open until it has answered. */
+        node->recapture = node->recapture || node->notice.under_way;
+        go_on(node, now_us);
         return;
     }
     node->notice.rule = 0;
@@ -113,13 +127,7 @@ static void judge(struct tsr_node *node)
     }
 }
 
-static void lose_events(struct tsr_node *node)
-{
-    node->counters.events_lost += node->notice.body.count;
-    enter(node, TSR_PHASE_COMPARING);
-}
-
-static enum tsr_status send_events(struct tsr_node *node, uint64_t now_us)
+static void send_events(struct tsr_node *node, uint64_t now_us)
 {
     struct tsr_notice *notice = &node->notice;
     notice->body.capture_time_us = node->capture_time_us;
@@ -131,12 +139,31 @@ static enum tsr_status send_events(struct tsr_node *node, uint64_t now_us)
                                 sizeof notice->message - TSR_MESSAGE_OVERHEAD_LEN, &body_len);
     enum tsr_status status = tsr_node_seal_short(node, TSR_MESSAGE_EVENT, TSR_ADDRESS_SINK, notice->message, body_len,
                                                  &message_len, &counter);
-    return status != TSR_OK
-               ? status
-               : tsr_sender_start(&node->sender, notice->message, message_len, TSR_ADDRESS_SINK, counter, now_us);
+    if (status == TSR_OK) {
+        status = tsr_sender_start(&notice->sender, notice->message, message_len, TSR_ADDRESS_SINK, counter, now_us);
+    }
+    notice->under_way = status == TSR_OK;
+    if (status != TSR_OK) { /* no counter left, or the last frame of the last notice is still in the MAC */
+        node->counters.events_lost += notice->body.count;
+        node->recapture = true;
+    }
 }
 
-static struct work measure_zone(struct tsr_node *node)
+void tsr_node_finish_notice(struct tsr_node *node)
+{
+    struct tsr_notice *notice = &node->notice;
+    enum tsr_status result = tsr_sender_result(&notice->sender);
+    if (result == TSR_OK || result == TSR_ERR_FORMAT) { /* what the sink refuses it would refuse again */
+        memcpy(notice->reported, notice->found, sizeof notice->reported);
+    } else {
+        node->recapture = true;
+    }
+    uint32_t *counter = result == TSR_OK ? &node->counters.events_sent : &node->counters.events_lost;
+    *counter += notice->body.count;
+    notice->under_way = false;
+}
+
+struct work tsr_node_measure(struct tsr_node *node, uint64_t now_us)
 {
     struct tsr_notice *notice = &node->notice;
     struct tsr_zone *zone = (struct tsr_zone *)(void *)node->scratch;
@@ -144,48 +171,18 @@ static struct work measure_zone(struct tsr_node *node)
     uint16_t before = tsr_zone_rows_done(zone);
     enum tsr_status status = tsr_zone_run(zone, rows_of_step(node, TSR_IMAGE_HEIGHT_MAX));
     struct work work = work_of(TSR_WORK_MEASURE, (size_t)(tsr_zone_rows_done(zone) - before) * width);
-    if (status == TSR_OK) {
-        judge(node);
-        notice->rule++;
-        if (notice->rule < node->config.rule_count) {
-            start_zone(node);
-        } else {
-            notice->under_way = false;
-            enter(node, notice->body.count > 0 ? TSR_PHASE_NOTIFYING : TSR_PHASE_COMPARING);
-        }
+    if (status != TSR_OK) {
+        return work;
     }
+    judge(node);
+    notice->rule++;
+    if (notice->rule < node->config.rule_count) {
+        start_zone(node);
+        return work;
+    }
+    if (notice->body.count > 0) {
+        send_events(node, now_us);
+    }
+    go_on(node, now_us);
     return work;
-}
-
-/* The map waits: what an EVENT says is worth more, and it is one frame. */
-static struct work notify(struct tsr_node *node, uint64_t now_us)
-{
-    struct tsr_notice *notice = &node->notice;
-    if (!tsr_sender_is_idle(&node->sender)) {
-        return no_work();
-    }
-    if (!notice->under_way) {
-        notice->under_way = true;
-        if (send_events(node, now_us) != TSR_OK) { /* no counter left */
-            lose_events(node);
-        }
-        return work_of(TSR_WORK_SEAL, sizeof notice->message);
-    }
-    enum tsr_status result = tsr_sender_result(&node->sender);
-    if (result == TSR_OK || result == TSR_ERR_FORMAT) { /* what the sink refuses it would refuse again */
-        memcpy(notice->reported, notice->found, sizeof notice->reported);
-    }
-    if (result == TSR_OK) {
-        node->counters.events_sent += notice->body.count;
-        enter(node, TSR_PHASE_COMPARING);
-    } else {
-        node->recapture = node->recapture || result != TSR_ERR_FORMAT;
-        lose_events(node);
-    }
-    return no_work();
-}
-
-struct work tsr_node_measure(struct tsr_node *node, uint64_t now_us)
-{
-    return node->phase == TSR_PHASE_MEASURING ? measure_zone(node) : notify(node, now_us);
 }

@@ -59,6 +59,7 @@ static void take_short(struct tsr_node *node, const struct tsr_fragment *fragmen
     if (header->kind == TSR_MESSAGE_STATUS && header->origin == node->sender.destination &&
         tsr_body_read_status(body, body_len, &status) == TSR_OK) { /* nobody else can accept what it sends */
         tsr_sender_on_status(&node->sender, &status, now_us);
+        tsr_sender_on_status(&node->notice.sender, &status, now_us);
     } else if (header->kind == TSR_MESSAGE_WAKE && node->config.role == TSR_ROLE_WING &&
                header->key_use == TSR_KEY_PAIR && tsr_body_read_capture(body, body_len, &wake) == TSR_OK) {
         tsr_node_on_wake(node, &wake, frame_time_us);

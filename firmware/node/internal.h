@@ -22,6 +22,7 @@
 enum token {
     TOKEN_NONE,
     TOKEN_SENDER,
+    TOKEN_NOTICE,
     TOKEN_WAKE
 };
 
@@ -107,13 +108,17 @@ void tsr_node_on_wake(struct tsr_node *node, const struct tsr_body_capture *wake
 /* mapping.c: UNPACKING .. COMPARING */
 struct work tsr_node_make_map(struct tsr_node *node, uint64_t now_us);
 
-/* event.c: MEASURING and NOTIFYING; to MEASURING, or past both if there are no rules */
+/* event.c: MEASURING, or past it if there is nothing to measure now */
+void tsr_node_start_measuring(struct tsr_node *node, uint64_t now_us);
 struct work tsr_node_measure(struct tsr_node *node, uint64_t now_us);
-void tsr_node_start_measuring(struct tsr_node *node);
+/* When its sender is done. */
+void tsr_node_finish_notice(struct tsr_node *node);
 /* NULL, or the name of a bad field. */
 const char *tsr_node_check_rules(const struct tsr_node_config *config);
 
 /* report.c: ENCODING .. SENDING */
 struct work tsr_node_report_map(struct tsr_node *node, uint64_t now_us);
+/* The map that was under way while the node watched is committed or lost. */
+void tsr_node_finish_map(struct tsr_node *node);
 
 #endif

@@ -119,7 +119,7 @@ static struct work code_reference(struct tsr_node *node)
 {
     struct tsr_gray view = tsr_node_left_view(node);
     struct tsr_picture_encoder *encoder = (struct tsr_picture_encoder *)(void *)node->scratch;
-    if (node->config.reference_step == TSR_REFERENCE_NONE) {
+    if (node->config.reference_step == TSR_REFERENCE_NONE || node->measures_only) {
         node->reference_len = 0;
         start_matching(node);
         return no_work();
@@ -161,14 +161,14 @@ static struct work match(struct tsr_node *node)
     return work_of(TSR_WORK_MATCH, units);
 }
 
-static struct work filter(struct tsr_node *node)
+static struct work filter(struct tsr_node *node, uint64_t now_us)
 {
     uint16_t before = tsr_median_rows_done(&node->work.median);
     enum tsr_status status = tsr_median_run(&node->work.median, rows_of_step(node, TSR_IMAGE_HEIGHT_MAX));
     size_t units = (size_t)(tsr_median_rows_done(&node->work.median) - before) * node->config.match.width;
     if (status == TSR_OK) {
         node->counters.maps_made++;
-        tsr_node_start_measuring(node);
+        tsr_node_start_measuring(node, now_us);
     }
     return work_of(TSR_WORK_MEDIAN, units);
 }
@@ -222,7 +222,7 @@ struct work tsr_node_make_map(struct tsr_node *node, uint64_t now_us)
     case TSR_PHASE_UNPACKING: return node->inbox_ready ? open_view(node) : decode_view(node);
     case TSR_PHASE_REFERENCE: return code_reference(node);
     case TSR_PHASE_MATCHING: return match(node);
-    case TSR_PHASE_MEDIAN: return filter(node);
+    case TSR_PHASE_MEDIAN: return filter(node, now_us);
     case TSR_PHASE_COMPARING: return compare(node, now_us);
     default: return no_work();
     }

@@ -13,9 +13,9 @@ const char *tsr_role_name(enum tsr_role role)
 
 const char *tsr_phase_name(enum tsr_node_phase phase)
 {
-    static const char *const names[TSR_PHASE_COUNT] = {
-        "idle",   "watching",  "waking",    "capturing", "receiving", "unpacking", "reference", "matching",
-        "median", "measuring", "notifying", "comparing", "filtering", "encoding",  "sealing",   "sending"};
+    static const char *const names[TSR_PHASE_COUNT] = {"idle",      "watching",  "waking",   "capturing", "receiving",
+                                                       "unpacking", "reference", "matching", "median",    "measuring",
+                                                       "comparing", "filtering", "encoding", "sealing",   "sending"};
     return (unsigned)phase < TSR_PHASE_COUNT ? names[phase] : "unknown";
 }
 

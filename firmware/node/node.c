@@ -74,9 +74,11 @@ enum tsr_status tsr_node_init(struct tsr_node *node, const struct tsr_node_confi
         return status;
     }
     tsr_sender_init(&node->sender, config->address, TOKEN_SENDER);
+    tsr_sender_init(&node->notice.sender, config->address, TOKEN_NOTICE);
     tsr_node_reset_inbox(node);
     enter(node, TSR_PHASE_IDLE);
     node->next_watch_us = now_us;
+    node->next_measure_us = config->measure_period_us > 0 && config->rule_count > 0 ? now_us : TSR_TIME_NEVER;
     node->recapture = true;                                            /* the first map needs no change */
     memset(node->notice.reported, 0xff, sizeof node->notice.reported); /* nothing is */
     node->uplink.timer_us = TSR_TIME_NEVER;
@@ -92,6 +94,8 @@ static void take_confirms(struct tsr_node *node, uint64_t now_us)
     while (tsr_mac_confirmed(&node->mac, &confirm)) {
         if (confirm.token == TOKEN_SENDER) {
             tsr_sender_on_confirm(&node->sender, &confirm, now_us);
+        } else if (confirm.token == TOKEN_NOTICE) {
+            tsr_sender_on_confirm(&node->notice.sender, &confirm, now_us);
         } else if (confirm.token == TOKEN_WAKE) {
             tsr_node_on_wake_confirm(node, &confirm, now_us);
         }
@@ -114,8 +118,7 @@ static struct work step_stage(struct tsr_node *node, uint64_t now_us)
     case TSR_PHASE_MATCHING:
     case TSR_PHASE_MEDIAN:
     case TSR_PHASE_COMPARING: return tsr_node_make_map(node, now_us);
-    case TSR_PHASE_MEASURING:
-    case TSR_PHASE_NOTIFYING: return tsr_node_measure(node, now_us);
+    case TSR_PHASE_MEASURING: return tsr_node_measure(node, now_us);
     case TSR_PHASE_ENCODING:
     case TSR_PHASE_SEALING:
     case TSR_PHASE_SENDING: return tsr_node_report_map(node, now_us);
@@ -148,6 +151,7 @@ static uint64_t next_wake(const struct tsr_node *node)
     uint64_t wake_us = node->uplink.timer_us;
     if (tsr_mac_room(&node->mac) > 0) { /* else a confirm comes first */
         wake_us = earlier(wake_us, tsr_sender_timer_us(&node->sender));
+        wake_us = earlier(wake_us, tsr_sender_timer_us(&node->notice.sender));
     }
     if (tsr_node_watches(node->config.role) && node->phase == TSR_PHASE_IDLE) {
         wake_us = earlier(wake_us, node->next_watch_us);
@@ -161,19 +165,37 @@ static uint64_t next_wake(const struct tsr_node *node)
     return wake_us;
 }
 
+static uint32_t fragments_sent(const struct tsr_node *node)
+{
+    return node->sender.counters.fragments + node->notice.sender.counters.fragments;
+}
+
+/* Of what is under way while the node does something else. */
+static void finish_deliveries(struct tsr_node *node)
+{
+    if (node->notice.under_way && tsr_sender_is_idle(&node->notice.sender)) {
+        tsr_node_finish_notice(node);
+    }
+    if (node->map_under_way && tsr_sender_is_idle(&node->sender)) {
+        tsr_node_finish_map(node);
+    }
+}
+
 struct tsr_node_outcome tsr_node_step(struct tsr_node *node, uint64_t now_us)
 {
     take_confirms(node, now_us);
+    finish_deliveries(node);
     struct work work = no_work();
     if (tsr_node_take_frame(node, now_us)) {
         work = work_of(TSR_WORK_SEAL, TSR_FRAME_PSDU_MAX);
     } else {
-        uint32_t fragments = node->sender.counters.fragments;
+        uint32_t fragments = fragments_sent(node);
+        tsr_sender_step(&node->notice.sender, &node->mac, &node->config.routes, now_us);
         tsr_sender_step(&node->sender, &node->mac, &node->config.routes, now_us);
         if (node->config.role == TSR_ROLE_GATEWAY) {
             tsr_node_repeat_uplink(node, now_us);
         }
-        if (node->sender.counters.fragments != fragments) {
+        if (fragments_sent(node) != fragments) {
             work = work_of(TSR_WORK_SEAL, TSR_FRAME_PSDU_MAX);
         } else if (tsr_node_is_camera(node->config.role)) {
             work = step_phase(node, now_us);
@@ -215,7 +237,7 @@ enum tsr_node_phase tsr_node_get_phase(const struct tsr_node *node)
 bool tsr_node_is_quiet(const struct tsr_node *node)
 {
     return tsr_mac_room(&node->mac) == TSR_MAC_QUEUE_LEN && tsr_mac_received(&node->mac) == NULL &&
-           tsr_sender_is_idle(&node->sender) && !node->uplink.waiting;
+           tsr_sender_is_idle(&node->sender) && tsr_sender_is_idle(&node->notice.sender) && !node->uplink.waiting;
 }
 
 const struct tsr_node_counters *tsr_node_get_counters(const struct tsr_node *node)

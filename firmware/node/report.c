@@ -68,15 +68,43 @@ static struct work encode_map(struct tsr_node *node, uint64_t now_us)
     return work_of(TSR_WORK_MAP_ENCODE, rows * width);
 }
 
+/* As the one that is compared with, once the sink has it. */
+static struct work keep_map(struct tsr_node *node)
+{
+    size_t len = sizeof(uint16_t) * node->config.match.width * node->config.match.height;
+    memcpy(node->last_map, tsr_match_pair_map(node->pair), len);
+    return work_of(TSR_WORK_COPY, len);
+}
+
 static struct work seal_map(struct tsr_node *node, uint64_t now_us)
 {
     bool done = false;
     struct work work = tsr_node_continue_sealing(node, TSR_ADDRESS_SINK, now_us, &done);
-    if (done) {
-        node->counters.map_bytes += (uint32_t)node->message_len;
-        enter(node, TSR_PHASE_SENDING);
+    if (!done) {
+        return work;
     }
-    return work;
+    node->counters.map_bytes += (uint32_t)node->message_len;
+    if (node->config.role != TSR_ROLE_BINOCULAR || node->config.rule_count == 0) {
+        enter(node, TSR_PHASE_SENDING);
+        return work;
+    }
+    /* Its place is needed for the next views. */
+    node->map_under_way = true;
+    node->has_last_map = false;
+    tsr_node_rest(node, now_us);
+    return keep_map(node);
+}
+
+void tsr_node_finish_map(struct tsr_node *node)
+{
+    node->map_under_way = false;
+    if (tsr_sender_result(&node->sender) == TSR_OK) {
+        node->has_last_map = true;
+        node->counters.maps_sent++;
+    } else {
+        node->counters.maps_lost++;
+        node->recapture = true;
+    }
 }
 
 static struct work await_commit(struct tsr_node *node, uint64_t now_us)
@@ -84,16 +112,10 @@ static struct work await_commit(struct tsr_node *node, uint64_t now_us)
     if (!tsr_sender_is_idle(&node->sender)) {
         return no_work();
     }
-    if (tsr_sender_result(&node->sender) != TSR_OK) {
-        lose_map(node, now_us);
-        return no_work();
-    }
-    size_t len = sizeof(uint16_t) * node->config.match.width * node->config.match.height;
-    memcpy(node->last_map, tsr_match_pair_map(node->pair), len);
-    node->has_last_map = true;
-    node->counters.maps_sent++;
+    struct work work = tsr_sender_result(&node->sender) == TSR_OK ? keep_map(node) : no_work();
+    tsr_node_finish_map(node);
     tsr_node_rest(node, now_us);
-    return work_of(TSR_WORK_COPY, len);
+    return work;
 }
 
 struct work tsr_node_report_map(struct tsr_node *node, uint64_t now_us)

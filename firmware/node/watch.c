@@ -99,6 +99,9 @@ static void begin_pair_capture(struct tsr_node *node, uint64_t now_us)
     node->counters.frames_woken++;
     node->recapture = false;
     node->capture_id++;
+    if (node->next_measure_us != TSR_TIME_NEVER) {
+        node->next_measure_us = now_us + node->config.measure_period_us;
+    }
     node->attempt = 0;
     if (node->config.role == TSR_ROLE_LEAD) {
         /* In a step of its own: its confirm must not wait until the work of this one is done. */
@@ -142,7 +145,9 @@ static struct work compare_with_background(struct tsr_node *node, uint64_t now_u
     struct tsr_change_result result;
     (void)tsr_change_update(&node->change, &frame, &result);
     node->counters.frames_watched++;
-    if (!result.settling && (result.changed || node->recapture)) {
+    bool changed = result.changed || node->recapture;
+    if (!result.settling && (changed || now_us >= node->next_measure_us)) {
+        node->measures_only = !changed;
         begin_pair_capture(node, now_us);
     } else {
         tsr_node_rest(node, now_us);
@@ -151,7 +156,8 @@ static struct work compare_with_background(struct tsr_node *node, uint64_t now_u
 }
 
 /* Both views are there, or the left one while the wing's is on its way. What
- * they show becomes the background: one change wakes the pair once. */
+ * they show becomes the background: one change wakes the pair once. What was
+ * only to be measured does not: slow changes must add up. */
 static struct work take_views(struct tsr_node *node, uint64_t now_us)
 {
     bool right_ended = capture_ended(&node->right);
@@ -165,7 +171,10 @@ static struct work take_views(struct tsr_node *node, uint64_t now_us)
     }
     node->capture_time_us = node->left.time_us;
     struct tsr_gray_view frame = tsr_gray_as_view(tsr_node_left_view(node));
-    (void)tsr_change_rebase(&node->change, &frame);
+    if (!node->measures_only) {
+        (void)tsr_change_rebase(&node->change, &frame);
+    }
+    node->measures_only = node->measures_only || node->map_under_way;
     if (binocular) {
         enter(node, TSR_PHASE_REFERENCE);
     } else {

@@ -8,7 +8,7 @@ import pathlib
 import subprocess
 import tempfile
 
-# A zone of N percent is certainly entered with half as much again, and certainly not with less than ends an event.
+# A zone is certainly entered with half as much again as its area_percent; what is between that and what ends an event counts neither way.
 SURE, NONE = 1.5, 0.5
 AREA = 0.10  # area_percent's default
 
@@ -59,19 +59,51 @@ def share_near(looks, time_us):
     return max(share for _, share, _ in looks[max(0, at - 2):at + 2])
 
 
+def states(events, node, zone):
+    """[(time_us, begun)] as the sink is told."""
+    return [(int(event["capture_time_us"]), event["kind"] == "begun") for event in events
+            if int(event["node"]) == node and event["zone"] == zone]
+
+
+def knows(told, first_us, last_us):
+    """When, from first on and not after last, the sink was told that the zone is entered, or knew it already; None if never."""
+    before = [begun for time_us, begun in told if time_us < first_us]
+    if before and before[-1]:
+        return first_us
+    return next((time_us for time_us, begun in told if begun and first_us <= time_us <= last_us), None)
+
+
 def judge_entries(events, looks, period_us, settle_us):
-    """Caught: a 'begun' within the stretch or a look after it, if not begun already. False: a 'begun' with nobody there."""
+    """Caught: the sink knows of it before it is over, or a look later. False: told of somebody when the zone is empty."""
     total = caught = false = 0
     latencies_us = []
     for (node, zone), seen in looks.items():
-        begun = [int(event["capture_time_us"]) for event in events
-                 if int(event["node"]) == node and event["zone"] == zone and event["kind"] == "begun"]
+        told = states(events, node, zone)
         for first, last in entries(seen, period_us):
             if first < settle_us:
                 continue
             total += 1
-            hits = [time for time in begun if first - period_us <= time <= last + period_us]
-            caught += 1 if hits else 0
-            latencies_us += [max(0, hits[0] - first)] if hits else []
-        false += sum(1 for time in begun if time >= settle_us and share_near(seen, time) < NONE * AREA)
+            when = knows(told, first, last + period_us)
+            caught += when is not None
+            latencies_us += [] if when is None else [when - first]
+        false += sum(1 for time_us, begun in told if begun and time_us >= settle_us and share_near(seen, time_us) == 0)
     return {"entries": total, "caught": caught, "false": false, "latencies_us": latencies_us}
+
+
+def judge_surface(events, looks, period_us, change_m):
+    """Depth of each report against the truth, %, and how many looks after the true change it was taken."""
+    errors, late = [], []
+    for (node, zone), seen in looks.items():
+        told = [event for event in events
+                if int(event["node"]) == node and event["zone"] == zone and event["kind"] == "measured"]
+        truth = dict((time_us, depth_m) for time_us, _, depth_m in seen)
+        known = None
+        for event in told:
+            look_us = int(event["capture_time_us"]) // period_us * period_us
+            errors.append(100 * abs(float(event["depth_m"]) / truth[look_us] - 1))
+            if known is not None:
+                due = [time_us for time_us, _, depth_m in seen
+                       if known[0] < time_us and abs(depth_m - known[1]) >= change_m]
+                late.append((look_us - due[0]) / period_us if due else 0)
+            known = (look_us, truth[look_us])
+    return {"reports": len(errors), "errors_percent": errors, "late_looks": late}

@@ -87,6 +87,7 @@ TEST(HostZone, RefusesFieldsThatCannotBe)
     EXPECT_ZONE_REFUSED(kDoor + "area_percent = 0\n", "area_percent: 0 is outside");
     EXPECT_ZONE_REFUSED(kDoor + "area_percent = 101\n", "area_percent: 101 is outside");
     EXPECT_ZONE_REFUSED(kDoor + "hysteresis_percent = 100\n", "hysteresis_percent: 100 is outside");
+    EXPECT_ZONE_REFUSED(kTank + "every_s = -1\n", "every_s: -1 is outside 0..3600");
     EXPECT_ZONE_REFUSED(kTank + "hysteresis_percent = 5\n", "hysteresis_percent: does not belong to changed_by_m");
 }
 

@@ -64,47 +64,86 @@ static void finish_camera(bool right)
     tsr_node_on_camera(&fake.node, right, TSR_OK, camera->at_us > fake.now_us ? camera->at_us : fake.now_us);
 }
 
-/* Run until the node comes to the phase; every transmission is acknowledged. */
-static void reach(enum tsr_node_phase phase, uint64_t patience_us)
+static void pass(uint64_t time_us)
 {
-    const uint64_t end_us = fake.now_us + patience_us;
-    while (fake.now_us < end_us) {
-        (void)fake_node_run(&fake, 1);
-        if (tsr_node_get_phase(&fake.node) == phase) {
-            return;
-        }
-        fake.now_us += 200;
-        tsr_node_on_timer(&fake.node, fake.now_us);
-        fake_node_transmitted(&fake, TSR_RADIO_ACKED);
-        finish_camera(false);
-        finish_camera(true);
-    }
-    TEST_ASSERT_EQUAL_STRING(tsr_phase_name(phase), tsr_phase_name(tsr_node_get_phase(&fake.node)));
+    fake.now_us += time_us;
+    tsr_node_on_timer(&fake.node, fake.now_us);
+    fake_node_transmitted(&fake, TSR_RADIO_ACKED);
+    finish_camera(false);
+    finish_camera(true);
 }
 
-static void answer(enum tsr_delivery state)
+static bool notice_is_under_way(void)
+{
+    return fake.node.notice.under_way;
+}
+
+static bool map_is_under_way(void)
+{
+    return fake.node.map_under_way;
+}
+
+static bool event_is_lost(void)
+{
+    return tsr_node_get_counters(&fake.node)->events_lost > 0;
+}
+
+static bool is_watching(void)
+{
+    return tsr_node_get_phase(&fake.node) == TSR_PHASE_WATCHING;
+}
+
+/* Step by step until it is so; every transmission is acknowledged. */
+static void run_until(bool (*is_so)(void), uint64_t patience_us)
+{
+    const uint64_t end_us = fake.now_us + patience_us;
+    for (; fake.now_us < end_us && !is_so(); pass(200)) {
+        for (unsigned i = 0; i < STEPS_MAX && !is_so(); i++) {
+            if (fake_node_run(&fake, 1) == 1 && tsr_node_step(&fake.node, fake.now_us).work == TSR_WORK_NONE) {
+                break;
+            }
+        }
+    }
+    TEST_ASSERT_TRUE(is_so());
+}
+
+/* Nothing but time. */
+static void run_for(uint64_t time_us)
+{
+    const uint64_t end_us = fake.now_us + time_us;
+    for (; fake.now_us < end_us; pass(200)) {
+        (void)fake_node_run(&fake, STEPS_MAX);
+    }
+}
+
+static void answer(uint16_t message_id, enum tsr_delivery state)
 {
     uint8_t body[TSR_BODY_STATUS_MAX];
     size_t len = 0;
     struct tsr_body_status status;
     memset(&status, 0, sizeof status);
-    status.message_id = fake.node.sender.message_id;
+    status.message_id = message_id;
     status.state = (uint8_t)state;
     TEST_ASSERT_EQUAL(TSR_OK, tsr_body_write_status(&status, body, sizeof body, &len));
     const struct fake_message message = {TSR_MESSAGE_STATUS, TSR_KEY_NODE, TSR_ADDRESS_SINK, FAKE_BINOCULAR, body, len};
     fake_node_hear_message(&fake, FAKE_RELAY, &message);
+    pass(200);
+    (void)fake_node_run(&fake, 4);
 }
 
-/* Let what is being sent go out, then answer it. */
-static void end_sending(enum tsr_delivery state)
+static void answer_notice(enum tsr_delivery state)
 {
-    for (unsigned i = 0; i < 1000; i++) {
-        (void)fake_node_run(&fake, STEPS_MAX);
-        fake.now_us += 200;
-        tsr_node_on_timer(&fake.node, fake.now_us);
-        fake_node_transmitted(&fake, TSR_RADIO_ACKED);
-    }
-    answer(state);
+    run_for(10000); /* its frame is out */
+    answer(fake.node.notice.sender.message_id, state);
+    TEST_ASSERT_FALSE(notice_is_under_way());
+}
+
+static void answer_map(enum tsr_delivery state)
+{
+    run_until(map_is_under_way, 2000000);
+    run_for(20000);
+    answer(fake.node.sender.message_id, state);
+    TEST_ASSERT_FALSE(map_is_under_way());
 }
 
 static void start(void)
@@ -126,9 +165,9 @@ static struct tsr_body_events sent_events(void)
     struct tsr_message_header header;
     struct tsr_body_events events;
     size_t body_len = 0;
-    const size_t len = fake.node.sender.message_len;
+    const size_t len = fake.node.notice.sender.message_len;
     TEST_ASSERT_LESS_OR_EQUAL(sizeof message, len);
-    memcpy(message, fake.node.sender.message, len);
+    memcpy(message, fake.node.notice.sender.message, len);
     TEST_ASSERT_EQUAL(TSR_OK, tsr_message_parse(message, len, FAKE_BINOCULAR, TSR_ADDRESS_SINK, &header));
     TEST_ASSERT_EQUAL(TSR_MESSAGE_EVENT, header.kind);
     TEST_ASSERT_EQUAL(TSR_OK, tsr_message_open(&header, &cipher, message, len, &body_len));
@@ -153,31 +192,27 @@ static void expect_event(const struct tsr_body_events *events, unsigned at, uint
 /* The events, committed, then the map, committed. */
 static struct tsr_body_events deliver(void)
 {
-    reach(TSR_PHASE_NOTIFYING, 2000000);
-    (void)fake_node_run(&fake, STEPS_MAX);
+    run_until(notice_is_under_way, 2000000);
     const struct tsr_body_events events = sent_events();
-    end_sending(TSR_DELIVERY_COMMITTED);
-    reach(TSR_PHASE_SENDING, 2000000);
-    end_sending(TSR_DELIVERY_COMMITTED);
-    reach(TSR_PHASE_IDLE, 100000);
+    answer_notice(TSR_DELIVERY_COMMITTED);
+    answer_map(TSR_DELIVERY_COMMITTED);
     return events;
 }
 
 static void deliver_map_alone(void)
 {
-    reach(TSR_PHASE_SENDING, 2000000);
-    end_sending(TSR_DELIVERY_COMMITTED);
-    reach(TSR_PHASE_IDLE, 100000);
+    answer_map(TSR_DELIVERY_COMMITTED);
+    TEST_ASSERT_FALSE(notice_is_under_way());
 }
 
 /* Alike the last one the sink has, and nothing new to the rules. */
 static void expect_withheld(void)
 {
     const struct tsr_node_counters before = *tsr_node_get_counters(&fake.node);
-    reach(TSR_PHASE_COMPARING, 2000000);
-    reach(TSR_PHASE_IDLE, 100000);
+    run_for(300000);
     TEST_ASSERT_EQUAL(before.maps_withheld + 1, tsr_node_get_counters(&fake.node)->maps_withheld);
     TEST_ASSERT_EQUAL(before.events_sent, tsr_node_get_counters(&fake.node)->events_sent);
+    TEST_ASSERT_FALSE(notice_is_under_way());
 }
 
 static void test_begins_and_ends(void)
@@ -189,7 +224,7 @@ static void test_begins_and_ends(void)
     struct tsr_body_events events = deliver();
     TEST_ASSERT_EQUAL(1, events.count);
     expect_event(&events, 0, 0, TSR_EVENT_BEGUN, NEAR_PX);
-    show(NEAR_PX + 2);
+    show(NEAR_PX + 3);
     deliver_map_alone(); /* still begun */
     show(FAR_PX);
     events = deliver();
@@ -214,7 +249,6 @@ static void test_surface_is_measured_when_it_moves(void)
     show(NEAR_PX + 2); /* 639 mm, by 142 from what was reported */
     events = deliver();
     expect_event(&events, 0, 0, TSR_EVENT_MEASURED, NEAR_PX + 2);
-    config.rule_count = 0;
 }
 
 static void test_two_rules_in_one_message(void)
@@ -229,26 +263,97 @@ static void test_two_rules_in_one_message(void)
     TEST_ASSERT_EQUAL(2, tsr_node_get_counters(&fake.node)->events_sent);
 }
 
-/* The sink never answers: the map goes all the same, and the next one is judged as if nothing had been said. */
+/* The event is in the MAC's queue before a byte of the map is coded. */
+static void test_event_goes_before_the_map(void)
+{
+    config.rule_count = 1;
+    shift_px = NEAR_PX;
+    start();
+    run_until(notice_is_under_way, 2000000);
+    TEST_ASSERT_EQUAL_STRING("comparing", tsr_phase_name(tsr_node_get_phase(&fake.node)));
+    (void)tsr_node_step(&fake.node, fake.now_us);
+    TEST_ASSERT_EQUAL(1, fake.node.notice.sender.counters.fragments);
+}
+
+/* Somebody passes while a map is on its way: an event, and then a map of what is there. */
+static void test_watches_while_its_map_is_under_way(void)
+{
+    config.rule_count = 1;
+    start();
+    run_until(map_is_under_way, 2000000);
+    const uint16_t map_id = fake.node.sender.message_id;
+    show(NEAR_PX);
+    run_until(notice_is_under_way, 300000);
+    TEST_ASSERT_TRUE(map_is_under_way());
+    const struct tsr_body_events events = sent_events();
+    expect_event(&events, 0, 0, TSR_EVENT_BEGUN, NEAR_PX);
+    answer_notice(TSR_DELIVERY_COMMITTED);
+    run_for(1000);
+    TEST_ASSERT_EQUAL(1, tsr_node_get_counters(&fake.node)->maps_measured);
+    TEST_ASSERT_EQUAL(map_id, fake.node.sender.message_id);
+    answer(map_id, TSR_DELIVERY_COMMITTED);
+    answer_map(TSR_DELIVERY_COMMITTED); /* of the next look, without a change */
+    TEST_ASSERT_EQUAL(2, tsr_node_get_counters(&fake.node)->maps_sent);
+    const struct tsr_node_counters *counters = tsr_node_get_counters(&fake.node);
+    TEST_ASSERT_EQUAL(counters->maps_made, counters->maps_sent + counters->maps_withheld + counters->maps_measured);
+}
+
+/* What moves without a change of the picture is measured all the same; then a map of it is made. */
+static void test_measures_without_a_change(void)
+{
+    config.rule_count = 1;
+    config.measure_period_us = 300000;
+    start();
+    deliver_map_alone();
+    run_for(400000);
+    TEST_ASSERT_EQUAL(1, tsr_node_get_counters(&fake.node)->maps_measured);
+    TEST_ASSERT_EQUAL(1, tsr_node_get_counters(&fake.node)->maps_made - tsr_node_get_counters(&fake.node)->maps_sent);
+    shift_px = NEAR_PX; /* the left view is the same */
+    const struct tsr_body_events events = deliver();
+    expect_event(&events, 0, 0, TSR_EVENT_BEGUN, NEAR_PX);
+    TEST_ASSERT_EQUAL(2, tsr_node_get_counters(&fake.node)->maps_sent);
+    fake_node_stop(&fake);
+    config.measure_period_us = 0; /* without it nobody looks */
+    shift_px = FAR_PX;
+    start();
+    deliver_map_alone();
+    shift_px = NEAR_PX;
+    run_for(1000000);
+    TEST_ASSERT_EQUAL(1, tsr_node_get_counters(&fake.node)->maps_made);
+}
+
+/* The place of the last map was taken by one that the sink does not have: the next is sent, however similar. */
+static void test_map_lost_while_watching(void)
+{
+    config.rule_count = 1;
+    start();
+    answer_map(TSR_DELIVERY_COMMITTED);
+    show(FAR_PX + 3);
+    answer_map(TSR_DELIVERY_REFUSED);
+    TEST_ASSERT_EQUAL(1, tsr_node_get_counters(&fake.node)->maps_lost);
+    TEST_ASSERT_FALSE(fake.node.has_last_map);
+    answer_map(TSR_DELIVERY_COMMITTED);
+    TEST_ASSERT_EQUAL(2, tsr_node_get_counters(&fake.node)->maps_sent);
+}
+
+/* The sink never answers: the next map is judged as if nothing had been said. */
 static void test_lost_event_is_judged_again(void)
 {
     config.rule_count = 1;
     shift_px = NEAR_PX;
     start();
-    reach(TSR_PHASE_NOTIFYING, 2000000);
-    reach(TSR_PHASE_SENDING, 120000000);
+    run_until(notice_is_under_way, 2000000);
+    answer_map(TSR_DELIVERY_COMMITTED);
+    run_until(event_is_lost, 120000000);
     TEST_ASSERT_EQUAL(0, tsr_node_get_counters(&fake.node)->events_sent);
     TEST_ASSERT_EQUAL(1, tsr_node_get_counters(&fake.node)->events_lost);
-    end_sending(TSR_DELIVERY_COMMITTED);
-    reach(TSR_PHASE_IDLE, 100000);
-    reach(TSR_PHASE_NOTIFYING, 2000000); /* without a change */
-    (void)fake_node_run(&fake, STEPS_MAX);
+    run_until(notice_is_under_way, 2000000); /* without a change */
     const struct tsr_body_events events = sent_events();
     expect_event(&events, 0, 0, TSR_EVENT_BEGUN, NEAR_PX);
-    end_sending(TSR_DELIVERY_COMMITTED);
-    reach(TSR_PHASE_IDLE, 1000000); /* the map is withheld: it is the same */
+    answer_notice(TSR_DELIVERY_COMMITTED);
+    run_for(200000); /* the map is withheld: it is the same */
     TEST_ASSERT_EQUAL(1, tsr_node_get_counters(&fake.node)->events_sent);
-    TEST_ASSERT_EQUAL(1, tsr_node_get_counters(&fake.node)->maps_withheld);
+    TEST_ASSERT_EQUAL(1, tsr_node_get_counters(&fake.node)->maps_sent);
 }
 
 /* A sink with another site.toml: sending it again is no use. */
@@ -257,11 +362,9 @@ static void test_refused_event_is_not_repeated(void)
     config.rule_count = 1;
     shift_px = NEAR_PX;
     start();
-    reach(TSR_PHASE_NOTIFYING, 2000000);
-    end_sending(TSR_DELIVERY_REFUSED);
-    reach(TSR_PHASE_SENDING, 1000000);
-    end_sending(TSR_DELIVERY_COMMITTED);
-    reach(TSR_PHASE_IDLE, 100000);
+    run_until(notice_is_under_way, 2000000);
+    answer_notice(TSR_DELIVERY_REFUSED);
+    answer_map(TSR_DELIVERY_COMMITTED);
     TEST_ASSERT_EQUAL(1, tsr_node_get_counters(&fake.node)->events_lost);
     TEST_ASSERT_FALSE(fake.node.recapture);
     show(NEAR_PX + 1);
@@ -275,9 +378,9 @@ static void test_no_counter_left(void)
     config.counter_start = UINT32_MAX;
     shift_px = NEAR_PX;
     start();
-    reach(TSR_PHASE_NOTIFYING, 2000000);
-    reach(TSR_PHASE_IDLE, 1000000);
-    TEST_ASSERT_EQUAL(1, tsr_node_get_counters(&fake.node)->events_lost);
+    run_until(event_is_lost, 2000000);
+    TEST_ASSERT_FALSE(notice_is_under_way());
+    run_until(is_watching, 1000000);
     TEST_ASSERT_EQUAL(1, tsr_node_get_counters(&fake.node)->maps_lost);
 }
 
@@ -323,6 +426,10 @@ int main(void)
     RUN_TEST(test_begins_and_ends);
     RUN_TEST(test_surface_is_measured_when_it_moves);
     RUN_TEST(test_two_rules_in_one_message);
+    RUN_TEST(test_event_goes_before_the_map);
+    RUN_TEST(test_watches_while_its_map_is_under_way);
+    RUN_TEST(test_measures_without_a_change);
+    RUN_TEST(test_map_lost_while_watching);
     RUN_TEST(test_lost_event_is_judged_again);
     RUN_TEST(test_refused_event_is_not_repeated);
     RUN_TEST(test_no_counter_left);

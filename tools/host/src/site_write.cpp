@@ -157,6 +157,7 @@ std::string zone_text(const SiteZone &zone)
                  list(std::array<double, 4>{double(part.x), double(part.y), double(part.width), double(part.height)}));
     text += line(zone_field(zone.kind), number(zone.depth_m));
     text += line("area_percent", number(zone.area_percent));
+    text += line("every_s", number(zone.every_s));
     return zone.kind == ZoneKind::changed ? text : text + line("hysteresis_percent", number(zone.hysteresis_percent));
 }
 

@@ -15,6 +15,7 @@ namespace
 
 constexpr int kSideMax = 640; /* the widest picture; the pair's own is checked later */
 constexpr double kDepthMaxM = 1e5;
+constexpr double kEveryMaxS = 3600;
 constexpr double kChangeMaxM = 65.535;     /* mm in 16 bits */
 constexpr double kScaleMax = 16'777'215.0; /* f B, px mm, with 8 fraction bits in 32 */
 
@@ -67,6 +68,7 @@ SiteZone read_zone(TomlFields &fields, bool of_any_pair)
     } else if (fields.has("hysteresis_percent")) {
         fields.refuse("hysteresis_percent", "does not belong to changed_by_m: it counts from the last report");
     }
+    zone.every_s = fields.number("every_s", 0, kEveryMaxS, zone.every_s);
     fields.refuse_unknown();
     return zone;
 }
@@ -111,6 +113,9 @@ void check_zone(const Site &site, const SitePair &pair, const SiteZone &zone)
     }
     if (!(zone.hysteresis_percent >= 0 && zone.hysteresis_percent < 100)) {
         refuse_zone(site, zone, "hysteresis_percent", "is outside 0..99");
+    }
+    if (!(zone.every_s >= 0 && zone.every_s <= kEveryMaxS)) {
+        refuse_zone(site, zone, "every_s", "is outside 0..3600");
     }
     check_depth(site, pair, zone);
 }

@@ -12,10 +12,13 @@
  *      ▲ ▲                             │ binocular                     │
  *      │ │                             └──────────► REFERENCE ◄────────┘
  *      │ │                                              │
- *      │ └── similar ── COMPARING ◄─┬─ MEDIAN ◄─ MATCHING ◄
- *      │                    │       └─ NOTIFYING ◄─ MEASURING ◄─ MEDIAN, if there are depth rules
+ *      │ └── similar ── COMPARING ◄─ MEASURING ◄─ MEDIAN ◄─ MATCHING ◄
  *      │                    │ different
  *      └── committed ── SENDING ◄─ SEALING ◄─ ENCODING
+ *
+ * MEASURING is for depth rules; its EVENT message goes out at once, by a sender
+ * of its own. A binocular node with depth rules goes on watching while its map
+ * is on its way: who passes meanwhile makes an event, and the next map waits.
  *
  * Time is a parameter: nothing here reads a clock, sleeps or blocks. A step
  * does one bounded piece of work and says how much, so that a map never keeps
@@ -66,7 +69,6 @@ enum tsr_node_phase {
     TSR_PHASE_MATCHING,
     TSR_PHASE_MEDIAN,
     TSR_PHASE_MEASURING, /* the zones of the depth rules */
-    TSR_PHASE_NOTIFYING, /* an EVENT message is on its way to the sink */
     TSR_PHASE_COMPARING, /* with the last map the sink has; a wing: with the last view the lead has */
     TSR_PHASE_FILTERING, /* a wing: prefiltering its view */
     TSR_PHASE_ENCODING,  /* map, or view on a wing */
@@ -114,8 +116,9 @@ struct tsr_node_config {
     struct tsr_similarity_config similarity;
     const struct tsr_depth_rule *rules; /* [rule_count] kept */
     uint8_t rule_count;                 /* 0 .. TSR_DEPTH_RULES_MAX */
-    int16_t d0_q4;                      /* disparity offset of the pair, px, Q12.4; carried in the map */
-    uint8_t step_log2;                  /* map's step 2^k / 16 px, 0..4 */
+    uint32_t measure_period_us; /* their zones are measured so often at least; 0: only when the picture changes */
+    int16_t d0_q4;              /* disparity offset of the pair, px, Q12.4; carried in the map */
+    uint8_t step_log2;          /* map's step 2^k / 16 px, 0..4 */
     /* Quantiser of the reference image, 0..63 (tsr/codec/picture.h): 2^(k/8) gray
      * levels in flat parts, 35 for an SSIM of 0.9; TSR_REFERENCE_NONE sends none. */
     uint8_t reference_step;
@@ -145,6 +148,7 @@ struct tsr_node_counters {
     uint32_t view_bytes;      /* wing: sealed, sent once */
     uint32_t maps_made;
     uint32_t maps_withheld;      /* similar to the last one the sink has */
+    uint32_t maps_measured;      /* for the depth rules alone: another one was under way, or nothing had changed */
     uint32_t maps_sent;          /* committed by the sink */
     uint32_t maps_lost;          /* given up or refused */
     uint32_t map_bytes;          /* sealed, sent once, with reference image */

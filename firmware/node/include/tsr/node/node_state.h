@@ -44,6 +44,7 @@ struct tsr_notice {
     uint16_t found[TSR_DEPTH_RULES_MAX];
     uint8_t rule; /* being measured */
     bool under_way;
+    struct tsr_sender sender;
     struct tsr_body_events body;
     uint8_t message[TSR_FRAGMENT_PIECE_MAX];
 };
@@ -67,8 +68,11 @@ struct tsr_node {
     enum tsr_node_phase phase;
     uint64_t phase_timer_us; /* next watch, or end of patience */
     uint64_t next_watch_us;
-    bool recapture; /* what has changed did not reach the sink */
+    uint64_t next_measure_us; /* TSR_TIME_NEVER: only when the picture changes */
+    bool recapture;           /* what has changed did not reach the sink */
     bool has_last_map;
+    bool map_under_way; /* and watching meanwhile */
+    bool measures_only; /* this capture: nothing has changed, or the message region is not free for its map */
     uint16_t capture_id;
     uint8_t attempt;
     bool wake_due; /* lead: a WAKE is to be sent; wing: one waits for the camera */

@@ -39,6 +39,7 @@ struct SiteZone {
     double depth_m = 0;       /* along the left camera's axis */
     double area_percent = 10; /* of the rectangle: what makes an event; a surface: what it takes to have a depth */
     double hysteresis_percent = 50; /* of area_percent: it ends when that much less is left; not of changed */
+    double every_s = 0;             /* measured so often at least; 0: only when the picture changes */
     int line = 0;                   /* in its file; 0 = built in memory */
 };
 
