@@ -19,6 +19,7 @@
 
 #include <unistd.h>
 
+#include "tsr/emulator/crowd_pictures.h"
 #include "tsr/emulator/out_folder.h"
 #include "tsr/emulator/pair_site.h"
 #include "tsr/emulator/preflight.h"
@@ -237,6 +238,15 @@ int run_recorded(const Options &options)
     return run_site(options, site, keys, pictures);
 }
 
+int run_crowd(const Options &options, const tsr::Scenario &scenario)
+{
+    const tsr::Crowd crowd = tsr::stage_crowd(scenario);
+    const tsr::KeyRing keys = tsr::derive_test_keys(scenario.seed, crowd.site);
+    tsr::check_nodes(crowd.site, keys);
+    tsr::CrowdPictures pictures(crowd, scenario.scene.duration_s);
+    return run_site(options, crowd.site, keys, pictures);
+}
+
 int run_scenario(const Options &options)
 {
     std::vector<std::string> settings = options.settings;
@@ -244,6 +254,9 @@ int run_scenario(const Options &options)
         settings.push_back("seed=" + std::to_string(*options.seed));
     }
     const tsr::Scenario scenario = tsr::load_scenario(options.site, settings);
+    if (scenario.recorded) {
+        return run_crowd(options, scenario);
+    }
     const tsr::Staging staging = tsr::stage_scenario(scenario);
     const tsr::KeyRing keys = tsr::derive_test_keys(scenario.seed, staging.site);
     tsr::check_nodes(staging.site, keys);

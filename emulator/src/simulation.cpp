@@ -102,16 +102,23 @@ bool Simulation::quiet() const
 void Simulation::run(const Progress &progress)
 {
     std::uint64_t longest_period_us = 0;
+    std::uint64_t latest_start_us = 0;
     for (const auto &node : nodes_) {
-        longest_period_us = std::max<std::uint64_t>(longest_period_us, node->site_node().watch_period_ms * 1000u);
-        node->power_on();
+        const SiteNode &site_node = node->site_node();
+        longest_period_us = std::max<std::uint64_t>(longest_period_us, site_node.watch_period_ms * 1000u);
+        if (site_node.start_ms > 0) {
+            latest_start_us = std::max<std::uint64_t>(latest_start_us, site_node.start_ms * std::uint64_t{1000});
+            faults_->start_later(*node, site_node.start_ms * std::uint64_t{1000});
+        } else {
+            node->power_on();
+        }
     }
     faults_->schedule(site_.faults);
     /* Every watching node sees the last frame at least once, and however short a recording is, there is a first map,
      * also of a node that a fault has started anew. */
     const std::uint64_t played_us =
         std::max(pictures_.end_us() + 2 * longest_period_us,
-                 FaultTimeline::last_us(site_.faults) + kFirstMapFrames * longest_period_us);
+                 std::max(latest_start_us, FaultTimeline::last_us(site_.faults)) + kFirstMapFrames * longest_period_us);
     const std::uint64_t latest_us = played_us + kPatienceUs;
     while (!queue_.empty() && queue_.next_us() <= latest_us) {
         if (queue_.next_us() > played_us && quiet()) {
