@@ -184,7 +184,7 @@ void Air::sense(Radio &radio)
     });
 }
 
-std::shared_ptr<Air::Transmission> Air::begin(Radio &sender, std::vector<std::uint8_t> psdu)
+std::shared_ptr<Air::Transmission> Air::begin(Radio &sender, std::vector<std::uint8_t> psdu, Radio *acknowledges)
 {
     account(sender);
     sender.sending = true;
@@ -196,6 +196,7 @@ std::shared_ptr<Air::Transmission> Air::begin(Radio &sender, std::vector<std::ui
     transmission->start_us = clock_.now_us();
     transmission->end_us = transmission->start_us + duration_us(psdu.size());
     transmission->psdu = std::move(psdu);
+    transmission->acknowledges = acknowledges;
     sender.on_air = transmission;
     arrive(*transmission);
     clock_.at(transmission->end_us, [this, transmission] {
@@ -214,12 +215,24 @@ void Air::arrive(const Transmission &transmission)
     signal.end_us = transmission.end_us;
     signal.channel = transmission.channel;
     for (const air::Link &link : neighbours_.of(transmission.sender)) {
+        Radio &radio = *radios_[link.radio];
         signal.level_q4 = link.mean_q4 +
                           propagation_.fading_q4(transmission.sender, link.radio, transmission.start_us) -
                           losses_.loss_q4(transmission.sender, link.radio);
-        radios_[link.radio]->receiver.begin(signal);
+        signal.wanted = is_for(transmission, radio);
+        radio.receiver.begin(signal);
         ++arrivals_;
     }
+}
+
+bool Air::is_for(const Transmission &transmission, const Radio &radio)
+{
+    const auto &psdu = transmission.psdu;
+    if (transmission.acknowledges != nullptr) {
+        return transmission.acknowledges == &radio;
+    }
+    return psdu.size() >= kAddressedLen && radio.pan_id == pan_of(psdu) &&
+           (destination_of(psdu) == kBroadcast || radio.address == destination_of(psdu));
 }
 
 /* Takes it from the air; gives those that have got it right. */
@@ -229,7 +242,7 @@ std::vector<Air::Receipt> Air::leave(const Transmission &transmission)
     for (const air::Link &link : neighbours_.of(transmission.sender)) {
         Radio &radio = *radios_[link.radio];
         const air::Outcome outcome = radio.receiver.end(transmission.number, clock_.now_us());
-        if (chance_keeps(transmission, radio.index, outcome.success_q32)) {
+        if (outcome.success_q32 > 0 && chance_keeps(transmission, radio.index, outcome.success_q32)) {
             heard.push_back({&radio, outcome.level_q4});
         }
     }
@@ -243,7 +256,7 @@ void Air::send_data(Radio &radio)
         finish(radio, TSR_RADIO_CHANNEL_BUSY, clock_.now_us());
         return;
     }
-    begin(radio, radio.psdu);
+    begin(radio, radio.psdu, nullptr);
     radio.sent = true;
 }
 
@@ -256,9 +269,8 @@ void Air::send_ack(Radio &radio, Radio &to, std::uint64_t asker_life, std::uint8
     const std::uint16_t check = fcs(psdu, psdu.size());
     psdu.push_back(static_cast<std::uint8_t>(check));
     psdu.push_back(static_cast<std::uint8_t>(check >> 8));
-    const auto ack = begin(radio, std::move(psdu));
+    const auto ack = begin(radio, std::move(psdu), &to);
     radio.sending_ack = true;
-    ack->acknowledges = &to;
     ack->asker_life = asker_life;
     ack->frame_end_us = frame_end_us;
 }
@@ -332,11 +344,8 @@ void Air::end_data(const Transmission &transmission, AirFrame frame, AirFate fat
     const bool broadcast = !addressed || destination_of(psdu) == kBroadcast;
     std::vector<Receipt> got;
     if (addressed && fate != AirFate::lost) {
-        std::copy_if(heard.begin(), heard.end(), std::back_inserter(got), [&](const Receipt &receipt) {
-            const Radio &radio = *receipt.radio;
-            return radio.receiving && radio.pan_id == pan_of(psdu) &&
-                   (broadcast || radio.address == destination_of(psdu));
-        });
+        std::copy_if(heard.begin(), heard.end(), std::back_inserter(got),
+                     [&](const Receipt &receipt) { return receipt.radio->receiving; });
     }
     if (addressed) {
         frame.lost_at = broadcast ? broadcast_losses(transmission, got.size()) : got.empty();

@@ -18,17 +18,17 @@ constexpr int kHighestQ4 = 20 * 16;
 
 using PowerTable = std::array<std::uint64_t, kHighestQ4 - kLowestQ4 + 1>;
 
-const PowerTable &powers()
+PowerTable make_powers()
 {
-    static const PowerTable table = [] {
-        PowerTable made{};
-        for (std::size_t i = 0; i < made.size(); ++i) {
-            made[i] = static_cast<std::uint64_t>(std::llround(ratio_of(static_cast<double>(i) / 16)));
-        }
-        return made;
-    }();
-    return table;
+    PowerTable made{};
+    for (std::size_t i = 0; i < made.size(); ++i) {
+        made[i] = static_cast<std::uint64_t>(std::llround(ratio_of(static_cast<double>(i) / 16)));
+    }
+    return made;
 }
+
+/* Made at the start of the program: asking each time whether it is there costs more than a look-up. */
+const PowerTable kPowers = make_powers();
 
 } // namespace
 
@@ -83,13 +83,18 @@ int to_dbm(int level_q4)
 
 std::uint64_t power_of(int dbm_q4)
 {
-    return powers()[static_cast<std::size_t>(std::clamp(dbm_q4, kLowestQ4, kHighestQ4) - kLowestQ4)];
+    return kPowers[static_cast<std::size_t>(std::clamp(dbm_q4, kLowestQ4, kHighestQ4) - kLowestQ4)];
 }
 
 int level_of(std::uint64_t power)
 {
-    const auto above = std::upper_bound(powers().begin(), powers().end(), power);
-    return kLowestQ4 + std::max(static_cast<int>(above - powers().begin()) - 1, 0);
+    const auto *above = std::upper_bound(kPowers.begin(), kPowers.end(), power);
+    return kLowestQ4 + std::max(static_cast<int>(above - kPowers.begin()) - 1, 0);
+}
+
+bool is_at_most(std::uint64_t power, int dbm_q4)
+{
+    return dbm_q4 >= kHighestQ4 || (dbm_q4 >= kLowestQ4 && power < power_of(dbm_q4 + 1));
 }
 
 } // namespace tsr::air

@@ -26,7 +26,7 @@ constexpr int kNegligibleQ4 = -10 * 16;
 ReceiverModel::ReceiverModel(const AirModel &model)
     : noise_q4(level_q4(model.sensitivity_dbm) - errors.sensitivity_sinr_q4()),
       interference_q4(level_q4(model.capture_db) - errors.sensitivity_sinr_q4()),
-      capture_q4(level_q4(model.capture_db)), noise(power_of(noise_q4)),
+      capture_q4(level_q4(model.capture_db)), lock_min_q4(noise_q4 + kLockSinrQ4), noise(power_of(noise_q4)),
       cca_threshold(power_of(level_q4(model.cca_threshold_dbm)))
 {
 }
@@ -38,7 +38,7 @@ int ReceiverModel::floor_q4() const
 
 void Receiver::tune(std::uint8_t channel, std::uint64_t now_us)
 {
-    locked_ = locked_ && channel == channel_;
+    locked_ = false;
     channel_ = channel;
     sense(now_us);
 }
@@ -50,49 +50,56 @@ void Receiver::listen(bool on, std::uint64_t now_us)
     sense(now_us);
 }
 
-/* Of all others on the channel, with the weight that a frame has against noise. */
-std::uint64_t Receiver::interference(std::uint64_t but_number, std::uint64_t now_us) const
+/* Noise, and all others on the channel with the weight that a frame has against noise. */
+std::uint64_t Receiver::disturbance(std::uint64_t but_number, std::uint64_t now_us) const
 {
-    std::uint64_t sum = 0;
-    for (const Signal &other : signals_) {
+    std::uint64_t sum = model_->noise;
+    for (const Heard &other : signals_) {
         if (other.number != but_number && other.channel == channel_ && other.end_us > now_us) {
-            sum += power_of(other.level_q4 + model_->interference_q4);
+            sum += other.weight;
         }
     }
     return sum;
 }
 
-int Receiver::sinr_q4(const Signal &signal, std::uint64_t now_us) const
-{
-    return signal.level_q4 - level_of(model_->noise + interference(signal.number, now_us));
-}
-
 /* Nothing has begun or ended since settled_us_: one piece of the frame at one SINR. */
 void Receiver::settle(std::uint64_t now_us)
 {
-    if (!locked_ || now_us <= settled_us_) {
+    if (!locked_ || !followed_.wanted || now_us <= settled_us_) {
         return;
     }
     const std::uint64_t bits = (now_us - followed_.start_us) / kBitUs - (settled_us_ - followed_.start_us) / kBitUs;
-    const int sinr = sinr_q4(followed_, settled_us_);
+    const int sinr = followed_.level_q4 - level_of(disturbance(followed_.number, settled_us_));
     success_q32_ = both_q32(success_q32_, model_->errors.success_q32(sinr, bits));
     settled_us_ = now_us;
+}
+
+/* Whether the receiver follows it from now on. The cheap questions come first: most signals are too weak or come too
+ * late.
+ */
+bool Receiver::takes(const Signal &signal, std::uint64_t now_us) const
+{
+    if (!listening_ || signal.channel != channel_ || signal.level_q4 < model_->lock_min_q4) {
+        return false;
+    }
+    if (locked_ && (now_us >= followed_.start_us + kSynchronisationUs ||
+                    signal.level_q4 < followed_.level_q4 + model_->capture_q4)) {
+        return false;
+    }
+    return is_at_most(disturbance(signal.number, now_us), signal.level_q4 - kLockSinrQ4);
 }
 
 void Receiver::begin(const Signal &signal)
 {
     const std::uint64_t now_us = signal.start_us;
     settle(now_us);
-    signals_.push_back(signal);
-    if (listening_ && signal.channel == channel_ && sinr_q4(signal, now_us) >= kLockSinrQ4) {
-        const bool synchronising = now_us < followed_.start_us + kSynchronisationUs;
-        const bool stronger = signal.level_q4 >= followed_.level_q4 + model_->capture_q4;
-        if (!locked_ || (synchronising && stronger)) {
-            locked_ = true;
-            followed_ = signal;
-            success_q32_ = kCertainQ32;
-            settled_us_ = now_us;
-        }
+    signals_.push_back({signal.number, signal.end_us, power_of(signal.level_q4),
+                        power_of(signal.level_q4 + model_->interference_q4), signal.channel});
+    if (takes(signal, now_us)) {
+        locked_ = true;
+        followed_ = signal;
+        success_q32_ = kCertainQ32;
+        settled_us_ = now_us;
     }
     sense(now_us);
 }
@@ -100,12 +107,17 @@ void Receiver::begin(const Signal &signal)
 Outcome Receiver::end(std::uint64_t number, std::uint64_t now_us)
 {
     settle(now_us);
-    std::erase_if(signals_, [number](const Signal &signal) { return signal.number == number; });
+    const auto found =
+        std::find_if(signals_.begin(), signals_.end(), [number](const Heard &one) { return one.number == number; });
+    if (found != signals_.end()) {
+        *found = signals_.back();
+        signals_.pop_back();
+    }
     if (!locked_ || followed_.number != number) {
         return {};
     }
     locked_ = false;
-    return {success_q32_, followed_.level_q4};
+    return followed_.wanted ? Outcome{success_q32_, followed_.level_q4} : Outcome{};
 }
 
 void Receiver::start_cca(std::uint64_t now_us)
@@ -128,9 +140,9 @@ void Receiver::sense(std::uint64_t now_us)
         return;
     }
     std::uint64_t energy = 0;
-    for (const Signal &signal : signals_) {
+    for (const Heard &signal : signals_) {
         if (signal.channel == channel_ && signal.end_us > now_us) {
-            energy += power_of(signal.level_q4);
+            energy += signal.power;
         }
     }
     found_ = energy >= model_->cca_threshold || (locked_ && followed_.end_us > now_us);

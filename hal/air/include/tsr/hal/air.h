@@ -118,9 +118,10 @@ class Air
     void sense(Radio &radio);
     void send_data(Radio &radio);
     void send_ack(Radio &radio, Radio &to, std::uint64_t asker_life, std::uint8_t sequence, std::uint64_t frame_end_us);
-    std::shared_ptr<Transmission> begin(Radio &sender, std::vector<std::uint8_t> psdu);
+    std::shared_ptr<Transmission> begin(Radio &sender, std::vector<std::uint8_t> psdu, Radio *acknowledges);
     void cut(Radio &sender);
     void arrive(const Transmission &transmission);
+    static bool is_for(const Transmission &transmission, const Radio &radio);
     std::vector<Receipt> leave(const Transmission &transmission);
     void end(const Transmission &transmission);
     void end_data(const Transmission &transmission, AirFrame frame, AirFate fate, const std::vector<Receipt> &heard);

@@ -20,12 +20,13 @@ namespace tsr::air
 {
 
 double exponential(double x);
-double decibels(double ratio);      /* 10 log10(ratio), ratio > 0 */
-double ratio_of(double decibels);   /* its inverse */
-int level_q4(double decibels);      /* rounded to nearest, ties away from 0 */
-int to_dbm(int level_q4);           /* whole, likewise */
-std::uint64_t power_of(int dbm_q4); /* 1 at -150 dBm and below */
-int level_of(std::uint64_t power);  /* the nearest level below or equal, -150 .. +20 dBm */
+double decibels(double ratio);                    /* 10 log10(ratio), ratio > 0 */
+double ratio_of(double decibels);                 /* its inverse */
+int level_q4(double decibels);                    /* rounded to nearest, ties away from 0 */
+int to_dbm(int level_q4);                         /* whole, likewise */
+std::uint64_t power_of(int dbm_q4);               /* 1 at -150 dBm and below */
+int level_of(std::uint64_t power);                /* the nearest level below or equal, -150 .. +20 dBm */
+bool is_at_most(std::uint64_t power, int dbm_q4); /* level_of(power) <= dbm_q4, without a search */
 
 } // namespace tsr::air
 

@@ -34,6 +34,7 @@ struct ReceiverModel {
     int noise_q4;        /* dBm, from the sensitivity: receivers differ in nothing else */
     int interference_q4; /* dB that a frame counts for more than noise of its level; may be negative */
     int capture_q4;      /* dB that takes a receiver over */
+    int lock_min_q4;     /* dBm: below it noise alone hides a preamble */
     std::uint64_t noise;
     std::uint64_t cca_threshold;
     /* Links below this level, dBm, change no SINR by more than 0.41 dB: they are 10 dB below the noise. */
@@ -47,12 +48,15 @@ struct Signal {
     std::uint64_t end_us = 0;
     int level_q4 = 0; /* dBm; constant over a frame, whose 4 ms are short against fading */
     std::uint8_t channel = 0;
+    /* A frame for somebody else holds the receiver all the same, but nobody asks how probable it is. */
+    bool wanted = true;
 };
 
 /* How a transmission ended for one receiver. */
 struct Outcome {
-    std::uint64_t success_q32 = 0; /* probability that its frame is right: 0 if another or none was followed */
-    int level_q4 = 0;              /* dBm */
+    /* Probability that its frame is right: 0 if another, none, or one nobody wants was followed. */
+    std::uint64_t success_q32 = 0;
+    int level_q4 = 0; /* dBm */
 };
 
 class Receiver
@@ -61,6 +65,7 @@ class Receiver
     /* model is kept. */
     explicit Receiver(const ReceiverModel &model) : model_(&model) {}
 
+    /* It loses the frame it follows: what comes next may be wanted otherwise. */
     void tune(std::uint8_t channel, std::uint64_t now_us);
     /* A deaf receiver loses the frame it follows. */
     void listen(bool on, std::uint64_t now_us);
@@ -75,13 +80,21 @@ class Receiver
     bool finish_cca();
 
   private:
-    std::uint64_t interference(std::uint64_t but_number, std::uint64_t now_us) const;
-    int sinr_q4(const Signal &signal, std::uint64_t now_us) const;
+    struct Heard { /* what others need of a signal */
+        std::uint64_t number;
+        std::uint64_t end_us;
+        std::uint64_t power;  /* as energy */
+        std::uint64_t weight; /* as interference */
+        std::uint8_t channel;
+    };
+
+    std::uint64_t disturbance(std::uint64_t but_number, std::uint64_t now_us) const;
+    bool takes(const Signal &signal, std::uint64_t now_us) const;
     void settle(std::uint64_t now_us);
     void sense(std::uint64_t now_us);
 
     const ReceiverModel *model_;
-    std::vector<Signal> signals_; /* on air here, on whatever channel */
+    std::vector<Heard> signals_; /* on air here, on whatever channel, in no order */
     Signal followed_;
     bool locked_ = false;
     bool listening_ = false;
