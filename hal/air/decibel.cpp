@@ -2,7 +2,6 @@
 #include "tsr/hal/air/decibel.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -13,11 +12,6 @@ namespace
 
 constexpr double kLn2 = 0.69314718055994530942;
 constexpr double kLn10 = 2.30258509299404568402;
-constexpr int kLowestQ4 = -150 * 16;
-constexpr int kHighestQ4 = 20 * 16;
-
-using PowerTable = std::array<std::uint64_t, kHighestQ4 - kLowestQ4 + 1>;
-
 PowerTable make_powers()
 {
     PowerTable made{};
@@ -27,10 +21,9 @@ PowerTable make_powers()
     return made;
 }
 
-/* Made at the start of the program: asking each time whether it is there costs more than a look-up. */
-const PowerTable kPowers = make_powers();
-
 } // namespace
+
+const PowerTable kPowers = make_powers();
 
 /* e^x = (e^(x / 2^n))^(2^n), the inner one by its Taylor series. */
 double exponential(double x)
@@ -81,20 +74,10 @@ int to_dbm(int level_q4)
     return (level_q4 + (level_q4 < 0 ? -8 : 8)) / 16;
 }
 
-std::uint64_t power_of(int dbm_q4)
-{
-    return kPowers[static_cast<std::size_t>(std::clamp(dbm_q4, kLowestQ4, kHighestQ4) - kLowestQ4)];
-}
-
 int level_of(std::uint64_t power)
 {
     const auto *above = std::upper_bound(kPowers.begin(), kPowers.end(), power);
-    return kLowestQ4 + std::max(static_cast<int>(above - kPowers.begin()) - 1, 0);
-}
-
-bool is_at_most(std::uint64_t power, int dbm_q4)
-{
-    return dbm_q4 >= kHighestQ4 || (dbm_q4 >= kLowestQ4 && power < power_of(dbm_q4 + 1));
+    return kPowerLowestQ4 + std::max(static_cast<int>(above - kPowers.begin()) - 1, 0);
 }
 
 } // namespace tsr::air

@@ -36,10 +36,20 @@ int ReceiverModel::floor_q4() const
     return noise_q4 + kNegligibleQ4 - std::max(interference_q4, 0);
 }
 
-void Receiver::tune(std::uint8_t channel, std::uint64_t now_us)
+void Receiver::add(int level_q4)
+{
+    energy_ += power_of(level_q4);
+    interference_ += power_of(level_q4 + model_->interference_q4);
+}
+
+void Receiver::tune(std::uint8_t channel, std::span<const int> levels_q4, std::uint64_t now_us)
 {
     locked_ = false;
     channel_ = channel;
+    energy_ = interference_ = 0;
+    for (const int level_q4 : levels_q4) {
+        add(level_q4);
+    }
     sense(now_us);
 }
 
@@ -50,74 +60,66 @@ void Receiver::listen(bool on, std::uint64_t now_us)
     sense(now_us);
 }
 
-/* Noise, and all others on the channel with the weight that a frame has against noise. */
-std::uint64_t Receiver::disturbance(std::uint64_t but_number, std::uint64_t now_us) const
-{
-    std::uint64_t sum = model_->noise;
-    for (const Heard &other : signals_) {
-        if (other.number != but_number && other.channel == channel_ && other.end_us > now_us) {
-            sum += other.weight;
-        }
-    }
-    return sum;
-}
-
 /* Nothing has begun or ended since settled_us_: one piece of the frame at one SINR. */
 void Receiver::settle(std::uint64_t now_us)
 {
-    if (!locked_ || !followed_.wanted || now_us <= settled_us_) {
+    if (!locked_ || !wanted_ || now_us <= settled_us_) {
         return;
     }
     const std::uint64_t bits = (now_us - followed_.start_us) / kBitUs - (settled_us_ - followed_.start_us) / kBitUs;
-    const int sinr = followed_.level_q4 - level_of(disturbance(followed_.number, settled_us_));
-    success_q32_ = both_q32(success_q32_, model_->errors.success_q32(sinr, bits));
+    const std::uint64_t others = interference_ - power_of(followed_.level_q4 + model_->interference_q4);
+    const int sinr_q4 = followed_.level_q4 - level_of(model_->noise + others);
+    success_q32_ = both_q32(success_q32_, model_->errors.success_q32(sinr_q4, bits));
     settled_us_ = now_us;
 }
 
-/* Whether the receiver follows it from now on. The cheap questions come first: most signals are too weak or come too
- * late.
- */
-bool Receiver::takes(const Signal &signal, std::uint64_t now_us) const
+/* Not yet added. The cheap questions come first: most signals are too weak or come too late. */
+bool Receiver::takes(const Signal &signal) const
 {
-    if (!listening_ || signal.channel != channel_ || signal.level_q4 < model_->lock_min_q4) {
+    if (!listening_ || signal.level_q4 < model_->lock_min_q4) {
         return false;
     }
-    if (locked_ && (now_us >= followed_.start_us + kSynchronisationUs ||
+    if (locked_ && (signal.start_us >= followed_.start_us + kSynchronisationUs ||
                     signal.level_q4 < followed_.level_q4 + model_->capture_q4)) {
         return false;
     }
-    return is_at_most(disturbance(signal.number, now_us), signal.level_q4 - kLockSinrQ4);
+    return is_at_most(model_->noise + interference_, signal.level_q4 - kLockSinrQ4);
 }
 
-void Receiver::begin(const Signal &signal)
+bool Receiver::begin(const Signal &signal)
 {
-    const std::uint64_t now_us = signal.start_us;
-    settle(now_us);
-    signals_.push_back({signal.number, signal.end_us, power_of(signal.level_q4),
-                        power_of(signal.level_q4 + model_->interference_q4), signal.channel});
-    if (takes(signal, now_us)) {
-        locked_ = true;
+    if (signal.channel != channel_) {
+        return false;
+    }
+    settle(signal.start_us);
+    const bool taken = takes(signal);
+    if (taken) {
+        locked_ = wanted_ = true;
         followed_ = signal;
         success_q32_ = kCertainQ32;
-        settled_us_ = now_us;
+        settled_us_ = signal.start_us;
     }
-    sense(now_us);
+    add(signal.level_q4);
+    sense(signal.start_us);
+    return taken;
 }
 
-Outcome Receiver::end(std::uint64_t number, std::uint64_t now_us)
+void Receiver::fade(int level_q4, std::uint8_t channel, std::uint64_t now_us)
 {
-    settle(now_us);
-    const auto found =
-        std::find_if(signals_.begin(), signals_.end(), [number](const Heard &one) { return one.number == number; });
-    if (found != signals_.end()) {
-        *found = signals_.back();
-        signals_.pop_back();
+    if (channel == channel_) {
+        settle(now_us);
+        energy_ -= power_of(level_q4);
+        interference_ -= power_of(level_q4 + model_->interference_q4);
     }
+}
+
+Outcome Receiver::end(std::uint64_t number)
+{
     if (!locked_ || followed_.number != number) {
         return {};
     }
     locked_ = false;
-    return followed_.wanted ? Outcome{success_q32_, followed_.level_q4} : Outcome{};
+    return wanted_ ? Outcome{success_q32_, followed_.level_q4} : Outcome{};
 }
 
 void Receiver::start_cca(std::uint64_t now_us)
@@ -139,13 +141,7 @@ void Receiver::sense(std::uint64_t now_us)
     if (!sensing_ || found_) {
         return;
     }
-    std::uint64_t energy = 0;
-    for (const Heard &signal : signals_) {
-        if (signal.channel == channel_ && signal.end_us > now_us) {
-            energy += signal.power;
-        }
-    }
-    found_ = energy >= model_->cca_threshold || (locked_ && followed_.end_us > now_us);
+    found_ = energy_ >= model_->cca_threshold || (locked_ && followed_.end_us > now_us);
 }
 
 } // namespace tsr::air

@@ -18,7 +18,7 @@
 #define TSR_HAL_AIR_RECEIVER_H
 
 #include <cstdint>
-#include <vector>
+#include <span>
 
 #include "tsr/hal/air/model.h"
 #include "tsr/hal/air/packet_error.h"
@@ -48,8 +48,6 @@ struct Signal {
     std::uint64_t end_us = 0;
     int level_q4 = 0; /* dBm; constant over a frame, whose 4 ms are short against fading */
     std::uint8_t channel = 0;
-    /* A frame for somebody else holds the receiver all the same, but nobody asks how probable it is. */
-    bool wanted = true;
 };
 
 /* How a transmission ended for one receiver. */
@@ -59,20 +57,29 @@ struct Outcome {
     int level_q4 = 0; /* dBm */
 };
 
+/*
+ * What is on air is kept as two sums of powers, so that a transmission costs a receiver the same however many there
+ * are: whoever tells of a signal's begin() tells of its fade() too, before anything else happens at that instant.
+ */
 class Receiver
 {
   public:
     /* model is kept. */
     explicit Receiver(const ReceiverModel &model) : model_(&model) {}
 
-    /* It loses the frame it follows: what comes next may be wanted otherwise. */
-    void tune(std::uint8_t channel, std::uint64_t now_us);
+    /* levels_q4: of what is on air there. It loses the frame it follows, on whatever channel: what comes next may be
+     * wanted otherwise. */
+    void tune(std::uint8_t channel, std::span<const int> levels_q4, std::uint64_t now_us);
     /* A deaf receiver loses the frame it follows. */
     void listen(bool on, std::uint64_t now_us);
-    /* A transmission begins; now is its start. */
-    void begin(const Signal &signal);
-    /* It ends. */
-    Outcome end(std::uint64_t number, std::uint64_t now_us);
+    /* A transmission begins; now is its start. True: the receiver follows it from now on. */
+    bool begin(const Signal &signal);
+    /* Nobody asks how probable the frame is that it follows. The receiver is busy with it all the same. */
+    void disregard() { wanted_ = false; }
+    /* A transmission of this level and channel is heard no more: its end, or its sender's. */
+    void fade(int level_q4, std::uint8_t channel, std::uint64_t now_us);
+    /* It ends, having faded. */
+    Outcome end(std::uint64_t number);
 
     /* Between these the channel was clear if neither energy nor a frame was found (CCA mode 3 with OR,
      * IEEE 802.15.4-2006, 6.9.9: energy alone, its mode 1, decides where no preamble was heard). */
@@ -80,27 +87,21 @@ class Receiver
     bool finish_cca();
 
   private:
-    struct Heard { /* what others need of a signal */
-        std::uint64_t number;
-        std::uint64_t end_us;
-        std::uint64_t power;  /* as energy */
-        std::uint64_t weight; /* as interference */
-        std::uint8_t channel;
-    };
-
-    std::uint64_t disturbance(std::uint64_t but_number, std::uint64_t now_us) const;
-    bool takes(const Signal &signal, std::uint64_t now_us) const;
+    void add(int level_q4);
+    bool takes(const Signal &signal) const;
     void settle(std::uint64_t now_us);
     void sense(std::uint64_t now_us);
 
     const ReceiverModel *model_;
-    std::vector<Heard> signals_; /* on air here, on whatever channel, in no order */
-    Signal followed_;
-    bool locked_ = false;
+    std::uint64_t energy_ = 0;       /* of all on the channel */
+    std::uint64_t interference_ = 0; /* the same, with the weight that a frame has against noise */
+    std::uint8_t channel_ = 0;
     bool listening_ = false;
+    bool locked_ = false;
+    bool wanted_ = false;
     bool sensing_ = false;
     bool found_ = false; /* by the CCA under way */
-    std::uint8_t channel_ = 0;
+    Signal followed_;
     std::uint64_t settled_us_ = 0; /* success_q32_ holds for the frame until then */
     std::uint64_t success_q32_ = 0;
 };
