@@ -66,12 +66,6 @@ std::uint64_t offset_ms_of(const Scenario &scenario, std::size_t pair)
     return first_ms + draw_to(last_ms - first_ms, draw(scenario, kOffsetKey, pair));
 }
 
-std::uint32_t start_ms_of(const Scenario &scenario, std::size_t pair)
-{
-    return static_cast<std::uint32_t>(
-        draw_to(rounded(scenario.recorded->start_within_s * 1000), draw(scenario, kStartKey, pair)));
-}
-
 void move(std::array<double, 3> &position, const Position &shift)
 {
     for (std::size_t axis = 0; axis < shift.size(); ++axis) {
@@ -91,7 +85,7 @@ void require_frames(const Site &recorded, const SitePair &pair)
 }
 
 SiteNode copy_node(const ScenarioRecorded &recorded, const SiteNode &original, std::uint16_t id,
-                   const std::string &name, const Position &shift, std::uint32_t start_ms)
+                   const std::string &name, const Position &shift)
 {
     SiteNode node = original;
     node.id = id;
@@ -100,7 +94,6 @@ SiteNode copy_node(const ScenarioRecorded &recorded, const SiteNode &original, s
     node.frames.clear();
     node.frames_right.clear();
     move(node.position_m, shift);
-    node.start_ms = start_ms;
     if (recorded.watch_period_ms > 0) {
         node.watch_period_ms = recorded.watch_period_ms;
     }
@@ -112,7 +105,6 @@ void add_copy(Site &site, const Site &recorded, const SitePair &original, const 
 {
     const ScenarioRecorded &options = *scenario.recorded;
     const Position place = place_of(scenario, site.pairs.size());
-    const std::uint32_t start_ms = start_ms_of(scenario, site.pairs.size());
     const auto next = static_cast<std::uint16_t>(site.nodes.size() + 1);
     const SiteNode &lead = *recorded.node(original.lead);
     const Position shift = {place[0] - lead.position_m[0], place[1] - lead.position_m[1]};
@@ -127,12 +119,11 @@ void add_copy(Site &site, const Site &recorded, const SitePair &original, const 
         move(pair.right->position_m, shift);
     }
     const bool two_boards = original.wing != kNodeNone;
-    site.nodes.push_back(copy_node(options, lead, next, pair.name + (two_boards ? " lead" : ""), shift, start_ms));
+    site.nodes.push_back(copy_node(options, lead, next, pair.name + (two_boards ? " lead" : ""), shift));
     site.nodes.back().parent = kNodeNone;
     if (two_boards) {
         pair.wing = static_cast<std::uint16_t>(next + 1);
-        site.nodes.push_back(
-            copy_node(options, *recorded.node(original.wing), pair.wing, pair.name + " wing", shift, start_ms));
+        site.nodes.push_back(copy_node(options, *recorded.node(original.wing), pair.wing, pair.name + " wing", shift));
         site.nodes.back().parent = pair.lead;
     }
     site.pairs.push_back(std::move(pair));
@@ -154,6 +145,42 @@ SiteNode make_gateway(const Site &site, double height_m)
         gateway.position_m[axis] = (low->position_m[axis] + high->position_m[axis]) / 2;
     }
     return gateway;
+}
+
+/* Hops to the gateway of the pair's lead. */
+std::size_t depth_of(const std::vector<std::uint16_t> &parents, std::uint16_t node)
+{
+    std::size_t depth = 0;
+    for (; parents[node] != kNodeNone; node = parents[node]) {
+        ++depth;
+    }
+    return depth;
+}
+
+/* Instants drawn from the seed, given out from the gateway outwards: whom nobody hears sends in vain, and again. */
+void start_outwards(Site &site, const Scenario &scenario)
+{
+    std::vector<std::uint16_t> parents(site.nodes.size() + 1, kNodeNone);
+    for (const SiteNode &node : site.nodes) {
+        parents[node.id] = node.parent;
+    }
+    std::vector<std::pair<std::size_t, std::size_t>> outwards; /* depth, pair */
+    std::vector<std::uint32_t> starts_ms;
+    const std::uint64_t last_ms = rounded(scenario.recorded->start_within_s * 1000);
+    for (std::size_t i = 0; i < site.pairs.size(); ++i) {
+        outwards.emplace_back(depth_of(parents, site.pairs[i].lead), i);
+        starts_ms.push_back(static_cast<std::uint32_t>(draw_to(last_ms, draw(scenario, kStartKey, i))));
+    }
+    std::sort(outwards.begin(), outwards.end());
+    std::sort(starts_ms.begin(), starts_ms.end());
+    for (std::size_t i = 0; i < outwards.size(); ++i) {
+        const SitePair &pair = site.pairs[outwards[i].second];
+        for (const std::uint16_t id : {pair.lead, pair.wing}) {
+            if (id != kNodeNone) {
+                site.nodes[id - 1u].start_ms = starts_ms[i];
+            }
+        }
+    }
 }
 
 Site load_recorded(const Scenario &scenario)
@@ -196,6 +223,7 @@ Crowd stage_crowd(const Scenario &scenario)
     crowd.pause_ms = rounded(scenario.recorded->pause_s * 1000);
     site.nodes.push_back(make_gateway(site, crowd.recorded.gateway().position_m[2]));
     join_tree(site, kReachM);
+    start_outwards(site, scenario);
     check_site(site);
     return crowd;
 }

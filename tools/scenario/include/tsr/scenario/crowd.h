@@ -3,7 +3,7 @@
  *
  * Pair i of the crowd is a copy of pair i mod n of the recorded site's n: calibration, roles, watched rectangles and
  * frames are the same, shared by all its copies. It plays the recording in rounds, entered at an instant of its own,
- * and is switched on at one: both drawn from the seed.
+ * and is switched on at one, from the gateway outwards: both drawn from the seed.
  *
  * Pairs become nodes 1, 2, ... (lead and wing of two boards follow each other), the gateway is the last and stands in
  * the middle. The tree is that of a virtual scene (tsr/scenario/staging.h).

@@ -53,7 +53,7 @@ struct ScenarioRecorded {
     std::array<double, 2> area_m{};
     double pause_s = 0;                /* between two rounds of a recording, of its first two frames */
     std::array<double, 2> offset_s{};  /* each pair enters its rounds at an instant between these */
-    double start_within_s = 0;         /* and is switched on at one of 0 .. this */
+    double start_within_s = 0;         /* until all are switched on, from the gateway outwards */
     std::uint32_t watch_period_ms = 0; /* 0: the recorded site's; likewise without a value: */
     std::optional<bool> reference_image;
 };
