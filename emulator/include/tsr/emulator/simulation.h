@@ -82,6 +82,7 @@ class Simulation
 
     std::vector<PhaseChange> timeline_;
     std::vector<AirTally> air_tallies_;
+    mutable std::size_t last_busy_ = 0; /* a node's index, where quiet() looks first */
     PcapngCapture capture_;
 };
 
