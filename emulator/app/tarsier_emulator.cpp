@@ -208,6 +208,8 @@ int run_site(const Options &options, const tsr::Site &site, const tsr::KeyRing &
     tsr::SinkProcess sink({options.sink, out.file("site.toml"), out.file("keys.toml"), out.file("sink.db"), out.path(),
                            out.file("sink.log")});
     tsr::Simulation simulation(site, keys, pictures, sink);
+    tsr::PcapngCapture capture(out.file("capture.pcapng"));
+    simulation.record_air(capture);
     ProgressBar progress(!options.quiet);
     simulation.run([&](std::uint64_t now_us, std::uint64_t end_us) {
         progress(now_us, end_us);
@@ -216,7 +218,7 @@ int run_site(const Options &options, const tsr::Site &site, const tsr::KeyRing &
     progress.finish();
     sink.finish();
 
-    simulation.capture().write(out.file("capture.pcapng"));
+    capture.complete();
     const auto maps = tsr::read_received_maps(site, simulation, pictures, out.path());
     const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const auto summary = tsr::make_summary(site, simulation, maps, sink.restarts(), wall_s);

@@ -59,7 +59,9 @@ Simulation::Simulation(const Site &site, const KeyRing &keys, Pictures &pictures
         ++tally.frames;
         tally.bytes += frame.psdu_len;
         tally.lost += frame.lost_at;
-        capture_.add(frame.start_us, frame.channel, {frame.psdu, frame.psdu_len});
+        if (capture_ != nullptr) {
+            capture_->add(frame.start_us, frame.channel, {frame.psdu, frame.psdu_len});
+        }
     });
 }
 
