@@ -19,6 +19,7 @@
 
 #include <unistd.h>
 
+#include "tsr/emulator/crowd_pictures.h"
 #include "tsr/emulator/out_folder.h"
 #include "tsr/emulator/pair_site.h"
 #include "tsr/emulator/preflight.h"
@@ -79,8 +80,11 @@ class ProgressBar
 
     void operator()(std::uint64_t now_us, std::uint64_t end_us)
     {
+        if (!shown_ || ++calls_ % kCallsPerLook != 0) {
+            return;
+        }
         const auto now = std::chrono::steady_clock::now();
-        if (!shown_ || now - last_ < std::chrono::milliseconds(100)) {
+        if (now - last_ < std::chrono::milliseconds(100)) {
             return;
         }
         last_ = now;
@@ -95,6 +99,8 @@ class ProgressBar
     }
 
   private:
+    static constexpr unsigned kCallsPerLook = 64; /* an event takes less time than a look at the clock */
+
     static void draw(std::uint64_t now_us, std::uint64_t end_us, double wall_s)
     {
         constexpr std::size_t kWidth = 40;
@@ -109,6 +115,7 @@ class ProgressBar
     }
 
     bool shown_;
+    unsigned calls_ = 0;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     std::chrono::steady_clock::time_point last_{};
 };
@@ -201,6 +208,8 @@ int run_site(const Options &options, const tsr::Site &site, const tsr::KeyRing &
     tsr::SinkProcess sink({options.sink, out.file("site.toml"), out.file("keys.toml"), out.file("sink.db"), out.path(),
                            out.file("sink.log")});
     tsr::Simulation simulation(site, keys, pictures, sink);
+    tsr::PcapngCapture capture(out.file("capture.pcapng"));
+    simulation.record_air(capture);
     ProgressBar progress(!options.quiet);
     simulation.run([&](std::uint64_t now_us, std::uint64_t end_us) {
         progress(now_us, end_us);
@@ -209,7 +218,7 @@ int run_site(const Options &options, const tsr::Site &site, const tsr::KeyRing &
     progress.finish();
     sink.finish();
 
-    simulation.capture().write(out.file("capture.pcapng"));
+    capture.complete();
     const auto maps = tsr::read_received_maps(site, simulation, pictures, out.path());
     const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const auto summary = tsr::make_summary(site, simulation, maps, sink.restarts(), wall_s);
@@ -237,6 +246,15 @@ int run_recorded(const Options &options)
     return run_site(options, site, keys, pictures);
 }
 
+int run_crowd(const Options &options, const tsr::Scenario &scenario)
+{
+    const tsr::Crowd crowd = tsr::stage_crowd(scenario);
+    const tsr::KeyRing keys = tsr::derive_test_keys(scenario.seed, crowd.site);
+    tsr::check_nodes(crowd.site, keys);
+    tsr::CrowdPictures pictures(crowd, scenario.scene.duration_s);
+    return run_site(options, crowd.site, keys, pictures);
+}
+
 int run_scenario(const Options &options)
 {
     std::vector<std::string> settings = options.settings;
@@ -244,6 +262,9 @@ int run_scenario(const Options &options)
         settings.push_back("seed=" + std::to_string(*options.seed));
     }
     const tsr::Scenario scenario = tsr::load_scenario(options.site, settings);
+    if (scenario.recorded) {
+        return run_crowd(options, scenario);
+    }
     const tsr::Staging staging = tsr::stage_scenario(scenario);
     const tsr::KeyRing keys = tsr::derive_test_keys(scenario.seed, staging.site);
     tsr::check_nodes(staging.site, keys);

@@ -86,6 +86,7 @@ EmulatedNode::EmulatedNode(const Site &site, const SiteNode &node, const KeyRing
         tsr_node_on_radio(node_.get(), &event, local_us());
         attend();
     });
+    around_.air.set_power(radio_, false); /* until power_on() */
     add_camera(false);
     add_camera(true);
 }

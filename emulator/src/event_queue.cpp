@@ -13,16 +13,25 @@ namespace tsr
 
 void EventQueue::at(std::uint64_t time_us, Action action)
 {
-    events_.push({std::max(time_us, now_us_), numbers_++, std::move(action)});
+    std::size_t place = actions_.size();
+    if (free_.empty()) {
+        actions_.push_back(std::move(action));
+    } else {
+        place = free_.back();
+        free_.pop_back();
+        actions_[place] = std::move(action);
+    }
+    events_.push({std::max(time_us, now_us_), numbers_++, place});
 }
 
 void EventQueue::run_next()
 {
-    /* top() is const because changing it could break the order; it is popped
-     * at once, so moving its action out is safe. */
-    Action action = std::move(const_cast<Event &>(events_.top()).action);
-    now_us_ = events_.top().time_us;
+    const Event event = events_.top();
     events_.pop();
+    now_us_ = event.time_us;
+    Action action = std::move(actions_[event.action]);
+    actions_[event.action] = nullptr;
+    free_.push_back(event.action);
     action();
 }
 

@@ -6,6 +6,12 @@
 namespace tsr
 {
 
+void FaultTimeline::start_later(EmulatedNode &node, std::uint64_t time_us)
+{
+    states_[node.id()].off_until_us = time_us;
+    start_at(node, time_us, 0);
+}
+
 void FaultTimeline::schedule(const std::vector<SiteFault> &faults)
 {
     for (const SiteFault &fault : faults) {
@@ -83,13 +89,19 @@ bool FaultTimeline::restart(EmulatedNode &node, const SiteFault &fault)
         return true;
     }
     state.off_until_us = back_us;
-    when_over(fault, [this, &node, back_us, start = fault.counter_start] {
+    start_at(node, back_us, fault.counter_start);
+    return true;
+}
+
+/* Unless it is dead by then, or has been off for longer. */
+void FaultTimeline::start_at(EmulatedNode &node, std::uint64_t time_us, std::uint32_t counter_start)
+{
+    world_.queue.at(time_us, [this, &node, time_us, counter_start] {
         const State &then = states_[node.id()];
-        if (!then.dead && then.off_until_us == back_us) {
-            node.power_on(start);
+        if (!then.dead && then.off_until_us == time_us) {
+            node.power_on(counter_start);
         }
     });
-    return true;
 }
 
 void FaultTimeline::drift(EmulatedNode &node, const SiteFault &fault)

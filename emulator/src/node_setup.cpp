@@ -34,14 +34,19 @@ tsr_role firmware_role(Role role)
 /* For every node below this one, the child it is behind. */
 std::vector<tsr_route> routes_of(const Site &site, const SiteNode &node)
 {
+    std::vector<std::uint16_t> parents(kNodeIdMax + 1u,
+                                       kNodeNone); /* by id: a search for each step up takes too long */
+    for (const SiteNode &other : site.nodes) {
+        parents[other.id] = other.parent;
+    }
     std::vector<tsr_route> routes;
     for (const SiteNode &other : site.nodes) {
-        const SiteNode *step = &other;
-        while (step->parent != kNodeNone && step->parent != node.id) {
-            step = site.node(step->parent);
+        std::uint16_t step = other.id;
+        while (parents[step] != kNodeNone && parents[step] != node.id) {
+            step = parents[step];
         }
-        if (step->parent == node.id) {
-            routes.push_back({other.id, step->id});
+        if (parents[step] == node.id) {
+            routes.push_back({other.id, step});
         }
     }
     return routes;

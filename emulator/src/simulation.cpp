@@ -59,7 +59,9 @@ Simulation::Simulation(const Site &site, const KeyRing &keys, Pictures &pictures
         ++tally.frames;
         tally.bytes += frame.psdu_len;
         tally.lost += frame.lost_at;
-        capture_.add(frame.start_us, frame.channel, {frame.psdu, frame.psdu_len});
+        if (capture_ != nullptr) {
+            capture_->add(frame.start_us, frame.channel, {frame.psdu, frame.psdu_len});
+        }
     });
 }
 
@@ -96,22 +98,34 @@ std::uint64_t Simulation::virtual_us(std::uint16_t node, std::uint64_t local_us)
 
 bool Simulation::quiet() const
 {
-    return std::all_of(nodes_.begin(), nodes_.end(), [](const auto &node) { return node->at_rest(); });
+    if (!nodes_[last_busy_]->at_rest()) { /* asked after each event, and mostly it is still the same one */
+        return false;
+    }
+    const auto busy = std::find_if(nodes_.begin(), nodes_.end(), [](const auto &node) { return !node->at_rest(); });
+    last_busy_ = busy == nodes_.end() ? 0 : static_cast<std::size_t>(busy - nodes_.begin());
+    return busy == nodes_.end();
 }
 
 void Simulation::run(const Progress &progress)
 {
     std::uint64_t longest_period_us = 0;
+    std::uint64_t latest_start_us = 0;
     for (const auto &node : nodes_) {
-        longest_period_us = std::max<std::uint64_t>(longest_period_us, node->site_node().watch_period_ms * 1000u);
-        node->power_on();
+        const SiteNode &site_node = node->site_node();
+        longest_period_us = std::max<std::uint64_t>(longest_period_us, site_node.watch_period_ms * 1000u);
+        if (site_node.start_ms > 0) {
+            latest_start_us = std::max<std::uint64_t>(latest_start_us, site_node.start_ms * std::uint64_t{1000});
+            faults_->start_later(*node, site_node.start_ms * std::uint64_t{1000});
+        } else {
+            node->power_on();
+        }
     }
     faults_->schedule(site_.faults);
     /* Every watching node sees the last frame at least once, and however short a recording is, there is a first map,
      * also of a node that a fault has started anew. */
     const std::uint64_t played_us =
         std::max(pictures_.end_us() + 2 * longest_period_us,
-                 FaultTimeline::last_us(site_.faults) + kFirstMapFrames * longest_period_us);
+                 std::max(latest_start_us, FaultTimeline::last_us(site_.faults)) + kFirstMapFrames * longest_period_us);
     const std::uint64_t latest_us = played_us + kPatienceUs;
     while (!queue_.empty() && queue_.next_us() <= latest_us) {
         if (queue_.next_us() > played_us && quiet()) {

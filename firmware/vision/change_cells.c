@@ -8,6 +8,9 @@
 #include <string.h>
 
 #include "change_bytes.h"
+#if defined(__SSE2__)
+#include "change_sse2.h"
+#endif
 
 /* Ours, chosen on scenes made of ten pictures and on vtest.avi: docs/change.md. */
 #define VOTER_STEP 7u  /* every seventh cell has a vote: they spread over the columns of usual widths */
@@ -56,7 +59,13 @@ void tsr_change_reduce(const struct tsr_change *change, const struct tsr_gray_vi
     unsigned cells_x = change->cells_x;
     const uint8_t *row = frame->pixels;
     for (unsigned y = 0; y < change->cells_y; y++, row += side * stride) {
-        for (unsigned x = 0; x < cells_x; x++) {
+        unsigned x = 0;
+#if defined(__SSE2__)
+        for (; side == BLOCK && (x + BLOCK) <= cells_x; x += BLOCK, means += BLOCK) {
+            tsr_change_mean_blocks(row + (size_t)x * side, stride, means);
+        }
+#endif
+        for (; x < cells_x; x++) {
             uint32_t sum = sum_cell(row + (size_t)x * side, stride, side);
             *means++ = (uint8_t)((sum + half) >> area_log2);
         }

@@ -57,8 +57,8 @@ unsigned destination_of(const std::vector<std::uint8_t> &psdu)
 const tsr_radio_ops Air::kOps = {&Air::configure, &Air::set_receiving, &Air::transmit};
 
 Air::Air(const AirModel &model, Clock clock)
-    : seed_(model.seed), cca_at_end_(model.cca_at_end), propagation_(model), receivers_(model),
-      neighbours_(propagation_, receivers_.floor_q4()),
+    : seed_(model.seed), cca_at_end_(model.cca_at_end), propagation_(model), receiver_model_(model),
+      neighbours_(propagation_, receiver_model_.floor_q4()),
       kept_q32_(
           static_cast<std::uint64_t>(std::llround((1 - model.frame_loss) * static_cast<double>(air::kCertainQ32)))),
       clock_(std::move(clock))
@@ -71,6 +71,7 @@ std::size_t Air::add_radio(const std::array<double, 3> &position_m, EventHandler
 {
     const std::size_t index = neighbours_.add(position_m);
     radios_.push_back(std::make_unique<Radio>(*this, index, std::move(handler)));
+    receivers_.emplace_back(receiver_model_);
     return index;
 }
 
@@ -114,7 +115,8 @@ AirTimes Air::times(std::size_t index) const
 /* For an acknowledgement a radio listens by itself, even if the MAC has told it to sleep. */
 void Air::update_listening(Radio &radio)
 {
-    radio.receiver.listen(!radio.sending && !radio.turning && (radio.receiving || radio.busy), clock_.now_us());
+    fade_ended();
+    radio.receiver().listen(!radio.sending && !radio.turning && (radio.receiving || radio.busy), clock_.now_us());
 }
 
 tsr_status Air::configure(void *radio, std::uint8_t channel, std::uint16_t pan_id, std::uint16_t address)
@@ -123,10 +125,12 @@ tsr_status Air::configure(void *radio, std::uint8_t channel, std::uint16_t pan_i
     if (channel < 11 || channel > 26) {
         return TSR_ERR_ARG;
     }
+    Air &air = *self.air;
     self.channel = channel;
     self.pan_id = pan_id;
     self.address = address;
-    self.receiver.tune(channel, self.air->clock_.now_us());
+    air.fade_ended();
+    self.receiver().tune(channel, air.levels_at(self.index, channel), air.clock_.now_us());
     return TSR_OK;
 }
 
@@ -156,7 +160,7 @@ tsr_status Air::transmit(void *radio, const std::uint8_t *psdu, std::size_t psdu
     self.psdu.assign(psdu, psdu + psdu_len);
     air.update_listening(self);
     if (!air.cca_at_end_) {
-        self.receiver.start_cca(air.clock_.now_us());
+        self.receiver().start_cca(air.clock_.now_us());
     }
     air.clock_.at(air.clock_.now_us() + TSR_RADIO_CCA_US, [&air, &self, life = self.life] {
         if (self.life == life) {
@@ -169,9 +173,10 @@ tsr_status Air::transmit(void *radio, const std::uint8_t *psdu, std::size_t psdu
 void Air::sense(Radio &radio)
 {
     if (cca_at_end_) {
-        radio.receiver.start_cca(clock_.now_us());
+        fade_ended();
+        radio.receiver().start_cca(clock_.now_us());
     }
-    if (!radio.receiver.finish_cca() || radio.sending) {
+    if (!radio.receiver().finish_cca() || radio.sending) {
         finish(radio, TSR_RADIO_CHANNEL_BUSY, clock_.now_us());
         return;
     }
@@ -184,7 +189,7 @@ void Air::sense(Radio &radio)
     });
 }
 
-std::shared_ptr<Air::Transmission> Air::begin(Radio &sender, std::vector<std::uint8_t> psdu)
+std::shared_ptr<Air::Transmission> Air::begin(Radio &sender, std::vector<std::uint8_t> psdu, Radio *acknowledges)
 {
     account(sender);
     sender.sending = true;
@@ -196,6 +201,7 @@ std::shared_ptr<Air::Transmission> Air::begin(Radio &sender, std::vector<std::ui
     transmission->start_us = clock_.now_us();
     transmission->end_us = transmission->start_us + duration_us(psdu.size());
     transmission->psdu = std::move(psdu);
+    transmission->acknowledges = acknowledges;
     sender.on_air = transmission;
     arrive(*transmission);
     clock_.at(transmission->end_us, [this, transmission] {
@@ -206,31 +212,90 @@ std::shared_ptr<Air::Transmission> Air::begin(Radio &sender, std::vector<std::ui
     return transmission;
 }
 
-void Air::arrive(const Transmission &transmission)
+void Air::arrive(Transmission &transmission)
 {
+    fade_ended();
     air::Signal signal;
     signal.number = transmission.number;
     signal.start_us = transmission.start_us;
     signal.end_us = transmission.end_us;
     signal.channel = transmission.channel;
-    for (const air::Link &link : neighbours_.of(transmission.sender)) {
+    const auto &links = neighbours_.of(transmission.sender);
+    transmission.levels_q4.reserve(links.size());
+    for (const air::Link &link : links) {
         signal.level_q4 = link.mean_q4 +
                           propagation_.fading_q4(transmission.sender, link.radio, transmission.start_us) -
                           losses_.loss_q4(transmission.sender, link.radio);
-        radios_[link.radio]->receiver.begin(signal);
-        ++arrivals_;
+        transmission.levels_q4.push_back(signal.level_q4);
+        if (receivers_[link.radio].begin(signal) && !is_for(transmission, *radios_[link.radio])) {
+            receivers_[link.radio].disregard();
+        }
+    }
+    arrivals_ += links.size();
+    on_air_.push_back(&transmission);
+    next_fade_us_ = std::min(next_fade_us_, transmission.end_us);
+}
+
+void Air::fade(Transmission &transmission)
+{
+    const std::uint64_t now_us = clock_.now_us();
+    const auto &links = neighbours_.of(transmission.sender);
+    for (std::size_t i = 0; i < links.size(); ++i) {
+        receivers_[links[i].radio].fade(transmission.levels_q4[i], transmission.channel, now_us);
+    }
+    transmission.faded = true;
+    std::erase(on_air_, &transmission);
+    next_fade_us_ = UINT64_MAX;
+    for (const Transmission *other : on_air_) {
+        next_fade_us_ = std::min(next_fade_us_, other->end_us);
     }
 }
 
-/* Takes it from the air; gives those that have got it right. */
-std::vector<Air::Receipt> Air::leave(const Transmission &transmission)
+/* What ends now is over before anything else happens now, in whatever order the events of this instant come. */
+void Air::fade_ended()
 {
+    while (next_fade_us_ <= clock_.now_us()) {
+        fade(**std::find_if(on_air_.begin(), on_air_.end(),
+                            [this](const Transmission *one) { return one->end_us == next_fade_us_; }));
+    }
+}
+
+/* Of what is on air on a channel, where a radio is. */
+std::vector<int> Air::levels_at(std::size_t radio, std::uint8_t channel) const
+{
+    std::vector<int> levels_q4;
+    for (const Transmission *transmission : on_air_) {
+        const auto &links = neighbours_.of(transmission->sender);
+        const auto link =
+            std::find_if(links.begin(), links.end(), [radio](const air::Link &one) { return one.radio == radio; });
+        if (transmission->channel == channel && link != links.end()) {
+            levels_q4.push_back(transmission->levels_q4[static_cast<std::size_t>(link - links.begin())]);
+        }
+    }
+    return levels_q4;
+}
+
+bool Air::is_for(const Transmission &transmission, const Radio &radio)
+{
+    const auto &psdu = transmission.psdu;
+    if (transmission.acknowledges != nullptr) {
+        return transmission.acknowledges == &radio;
+    }
+    return psdu.size() >= kAddressedLen && radio.pan_id == pan_of(psdu) &&
+           (destination_of(psdu) == kBroadcast || radio.address == destination_of(psdu));
+}
+
+/* Takes it from the air; gives those that have got it right. */
+std::vector<Air::Receipt> Air::leave(Transmission &transmission)
+{
+    if (!transmission.faded) {
+        fade(transmission);
+    }
     std::vector<Receipt> heard;
     for (const air::Link &link : neighbours_.of(transmission.sender)) {
-        Radio &radio = *radios_[link.radio];
-        const air::Outcome outcome = radio.receiver.end(transmission.number, clock_.now_us());
-        if (chance_keeps(transmission, radio.index, outcome.success_q32)) {
-            heard.push_back({&radio, outcome.level_q4});
+        const air::Outcome outcome = receivers_[link.radio].end(transmission.number);
+        if (outcome.success_q32 > 0 && chance_keeps(transmission, link.radio, outcome.success_q32)) {
+            heard.push_back({radios_[link.radio].get(), outcome.level_q4});
         }
     }
     return heard;
@@ -243,7 +308,7 @@ void Air::send_data(Radio &radio)
         finish(radio, TSR_RADIO_CHANNEL_BUSY, clock_.now_us());
         return;
     }
-    begin(radio, radio.psdu);
+    begin(radio, radio.psdu, nullptr);
     radio.sent = true;
 }
 
@@ -256,9 +321,8 @@ void Air::send_ack(Radio &radio, Radio &to, std::uint64_t asker_life, std::uint8
     const std::uint16_t check = fcs(psdu, psdu.size());
     psdu.push_back(static_cast<std::uint8_t>(check));
     psdu.push_back(static_cast<std::uint8_t>(check >> 8));
-    const auto ack = begin(radio, std::move(psdu));
+    const auto ack = begin(radio, std::move(psdu), &to);
     radio.sending_ack = true;
-    ack->acknowledges = &to;
     ack->asker_life = asker_life;
     ack->frame_end_us = frame_end_us;
 }
@@ -281,7 +345,7 @@ void Air::deliver(const Receipt &receipt, const Transmission &transmission)
     receipt.radio->handler(event);
 }
 
-void Air::end(const Transmission &transmission)
+void Air::end(Transmission &transmission)
 {
     Radio &sender = *radios_[transmission.sender];
     account(sender);
@@ -332,11 +396,8 @@ void Air::end_data(const Transmission &transmission, AirFrame frame, AirFate fat
     const bool broadcast = !addressed || destination_of(psdu) == kBroadcast;
     std::vector<Receipt> got;
     if (addressed && fate != AirFate::lost) {
-        std::copy_if(heard.begin(), heard.end(), std::back_inserter(got), [&](const Receipt &receipt) {
-            const Radio &radio = *receipt.radio;
-            return radio.receiving && radio.pan_id == pan_of(psdu) &&
-                   (broadcast || radio.address == destination_of(psdu));
-        });
+        std::copy_if(heard.begin(), heard.end(), std::back_inserter(got),
+                     [&](const Receipt &receipt) { return receipt.radio->receiving; });
     }
     if (addressed) {
         frame.lost_at = broadcast ? broadcast_losses(transmission, got.size()) : got.empty();

@@ -17,9 +17,11 @@ namespace tsr
 
 struct Air::Radio {
     Radio(Air &medium, std::size_t index_in_it, EventHandler owner)
-        : air(&medium), index(index_in_it), handler(std::move(owner)), receiver(medium.receivers_)
+        : air(&medium), index(index_in_it), handler(std::move(owner))
     {
     }
+
+    air::Receiver &receiver() const { return air->receivers_[index]; }
 
     Air *air;
     std::size_t index;
@@ -38,7 +40,6 @@ struct Air::Radio {
     std::uint64_t life = 0;         /* counts losses of power: what an earlier life has begun does not go on */
     bool powered = true;
     std::shared_ptr<Transmission> on_air; /* while sending */
-    air::Receiver receiver;
     mutable AirTimes times;
     mutable std::uint64_t accounted_us = 0;
 };
@@ -54,6 +55,8 @@ struct Air::Transmission {
     std::uint64_t asker_life = 0;   /* in which life the addressee asked for it */
     std::uint64_t frame_end_us = 0; /* of the frame it acknowledges */
     bool cut = false;               /* its sender lost its power */
+    bool faded = false;             /* nobody hears it any more, though its end may still be to come at this instant */
+    std::vector<int> levels_q4;     /* dBm at each of the sender's neighbours, in their order */
 };
 
 } // namespace tsr

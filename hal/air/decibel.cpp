@@ -2,7 +2,6 @@
 #include "tsr/hal/air/decibel.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -13,24 +12,18 @@ namespace
 
 constexpr double kLn2 = 0.69314718055994530942;
 constexpr double kLn10 = 2.30258509299404568402;
-constexpr int kLowestQ4 = -150 * 16;
-constexpr int kHighestQ4 = 20 * 16;
-
-using PowerTable = std::array<std::uint64_t, kHighestQ4 - kLowestQ4 + 1>;
-
-const PowerTable &powers()
+PowerTable make_powers()
 {
-    static const PowerTable table = [] {
-        PowerTable made{};
-        for (std::size_t i = 0; i < made.size(); ++i) {
-            made[i] = static_cast<std::uint64_t>(std::llround(ratio_of(static_cast<double>(i) / 16)));
-        }
-        return made;
-    }();
-    return table;
+    PowerTable made{};
+    for (std::size_t i = 0; i < made.size(); ++i) {
+        made[i] = static_cast<std::uint64_t>(std::llround(ratio_of(static_cast<double>(i) / 16)));
+    }
+    return made;
 }
 
 } // namespace
+
+const PowerTable kPowers = make_powers();
 
 /* e^x = (e^(x / 2^n))^(2^n), the inner one by its Taylor series. */
 double exponential(double x)
@@ -81,15 +74,10 @@ int to_dbm(int level_q4)
     return (level_q4 + (level_q4 < 0 ? -8 : 8)) / 16;
 }
 
-std::uint64_t power_of(int dbm_q4)
-{
-    return powers()[static_cast<std::size_t>(std::clamp(dbm_q4, kLowestQ4, kHighestQ4) - kLowestQ4)];
-}
-
 int level_of(std::uint64_t power)
 {
-    const auto above = std::upper_bound(powers().begin(), powers().end(), power);
-    return kLowestQ4 + std::max(static_cast<int>(above - powers().begin()) - 1, 0);
+    const auto *above = std::upper_bound(kPowers.begin(), kPowers.end(), power);
+    return kPowerLowestQ4 + std::max(static_cast<int>(above - kPowers.begin()) - 1, 0);
 }
 
 } // namespace tsr::air

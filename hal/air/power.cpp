@@ -16,9 +16,7 @@ void Air::cut(Radio &sender)
 {
     Transmission &transmission = *sender.on_air;
     transmission.cut = true;
-    for (const air::Link &link : neighbours_.of(sender.index)) {
-        radios_[link.radio]->receiver.end(transmission.number, clock_.now_us());
-    }
+    leave(transmission);
     sender.on_air.reset();
 }
 

@@ -26,7 +26,7 @@ constexpr int kNegligibleQ4 = -10 * 16;
 ReceiverModel::ReceiverModel(const AirModel &model)
     : noise_q4(level_q4(model.sensitivity_dbm) - errors.sensitivity_sinr_q4()),
       interference_q4(level_q4(model.capture_db) - errors.sensitivity_sinr_q4()),
-      capture_q4(level_q4(model.capture_db)), noise(power_of(noise_q4)),
+      capture_q4(level_q4(model.capture_db)), lock_min_q4(noise_q4 + kLockSinrQ4), noise(power_of(noise_q4)),
       cca_threshold(power_of(level_q4(model.cca_threshold_dbm)))
 {
 }
@@ -36,10 +36,20 @@ int ReceiverModel::floor_q4() const
     return noise_q4 + kNegligibleQ4 - std::max(interference_q4, 0);
 }
 
-void Receiver::tune(std::uint8_t channel, std::uint64_t now_us)
+void Receiver::add(int level_q4)
 {
-    locked_ = locked_ && channel == channel_;
+    energy_ += power_of(level_q4);
+    interference_ += power_of(level_q4 + model_->interference_q4);
+}
+
+void Receiver::tune(std::uint8_t channel, std::span<const int> levels_q4, std::uint64_t now_us)
+{
+    locked_ = false;
     channel_ = channel;
+    energy_ = interference_ = 0;
+    for (const int level_q4 : levels_q4) {
+        add(level_q4);
+    }
     sense(now_us);
 }
 
@@ -50,62 +60,66 @@ void Receiver::listen(bool on, std::uint64_t now_us)
     sense(now_us);
 }
 
-/* Of all others on the channel, with the weight that a frame has against noise. */
-std::uint64_t Receiver::interference(std::uint64_t but_number, std::uint64_t now_us) const
-{
-    std::uint64_t sum = 0;
-    for (const Signal &other : signals_) {
-        if (other.number != but_number && other.channel == channel_ && other.end_us > now_us) {
-            sum += power_of(other.level_q4 + model_->interference_q4);
-        }
-    }
-    return sum;
-}
-
-int Receiver::sinr_q4(const Signal &signal, std::uint64_t now_us) const
-{
-    return signal.level_q4 - level_of(model_->noise + interference(signal.number, now_us));
-}
-
 /* Nothing has begun or ended since settled_us_: one piece of the frame at one SINR. */
 void Receiver::settle(std::uint64_t now_us)
 {
-    if (!locked_ || now_us <= settled_us_) {
+    if (!locked_ || !wanted_ || now_us <= settled_us_) {
         return;
     }
     const std::uint64_t bits = (now_us - followed_.start_us) / kBitUs - (settled_us_ - followed_.start_us) / kBitUs;
-    const int sinr = sinr_q4(followed_, settled_us_);
-    success_q32_ = both_q32(success_q32_, model_->errors.success_q32(sinr, bits));
+    const std::uint64_t others = interference_ - power_of(followed_.level_q4 + model_->interference_q4);
+    const int sinr_q4 = followed_.level_q4 - level_of(model_->noise + others);
+    success_q32_ = both_q32(success_q32_, model_->errors.success_q32(sinr_q4, bits));
     settled_us_ = now_us;
 }
 
-void Receiver::begin(const Signal &signal)
+/* Not yet added. The cheap questions come first: most signals are too weak or come too late. */
+bool Receiver::takes(const Signal &signal) const
 {
-    const std::uint64_t now_us = signal.start_us;
-    settle(now_us);
-    signals_.push_back(signal);
-    if (listening_ && signal.channel == channel_ && sinr_q4(signal, now_us) >= kLockSinrQ4) {
-        const bool synchronising = now_us < followed_.start_us + kSynchronisationUs;
-        const bool stronger = signal.level_q4 >= followed_.level_q4 + model_->capture_q4;
-        if (!locked_ || (synchronising && stronger)) {
-            locked_ = true;
-            followed_ = signal;
-            success_q32_ = kCertainQ32;
-            settled_us_ = now_us;
-        }
+    if (!listening_ || signal.level_q4 < model_->lock_min_q4) {
+        return false;
     }
-    sense(now_us);
+    if (locked_ && (signal.start_us >= followed_.start_us + kSynchronisationUs ||
+                    signal.level_q4 < followed_.level_q4 + model_->capture_q4)) {
+        return false;
+    }
+    return is_at_most(model_->noise + interference_, signal.level_q4 - kLockSinrQ4);
 }
 
-Outcome Receiver::end(std::uint64_t number, std::uint64_t now_us)
+bool Receiver::begin(const Signal &signal)
 {
-    settle(now_us);
-    std::erase_if(signals_, [number](const Signal &signal) { return signal.number == number; });
+    if (signal.channel != channel_) {
+        return false;
+    }
+    settle(signal.start_us);
+    const bool taken = takes(signal);
+    if (taken) {
+        locked_ = wanted_ = true;
+        followed_ = signal;
+        success_q32_ = kCertainQ32;
+        settled_us_ = signal.start_us;
+    }
+    add(signal.level_q4);
+    sense(signal.start_us);
+    return taken;
+}
+
+void Receiver::fade(int level_q4, std::uint8_t channel, std::uint64_t now_us)
+{
+    if (channel == channel_) {
+        settle(now_us);
+        energy_ -= power_of(level_q4);
+        interference_ -= power_of(level_q4 + model_->interference_q4);
+    }
+}
+
+Outcome Receiver::end(std::uint64_t number)
+{
     if (!locked_ || followed_.number != number) {
         return {};
     }
     locked_ = false;
-    return {success_q32_, followed_.level_q4};
+    return wanted_ ? Outcome{success_q32_, followed_.level_q4} : Outcome{};
 }
 
 void Receiver::start_cca(std::uint64_t now_us)
@@ -127,13 +141,7 @@ void Receiver::sense(std::uint64_t now_us)
     if (!sensing_ || found_) {
         return;
     }
-    std::uint64_t energy = 0;
-    for (const Signal &signal : signals_) {
-        if (signal.channel == channel_ && signal.end_us > now_us) {
-            energy += power_of(signal.level_q4);
-        }
-    }
-    found_ = energy >= model_->cca_threshold || (locked_ && followed_.end_us > now_us);
+    found_ = energy_ >= model_->cca_threshold || (locked_ && followed_.end_us > now_us);
 }
 
 } // namespace tsr::air

@@ -13,93 +13,76 @@
 
 namespace tsr
 {
-namespace
+
+AtomicFile::AtomicFile(const std::filesystem::path &target, unsigned mode)
+    : target_(target), name_(target.parent_path() / ("." + target.filename().string() + ".XXXXXX"))
 {
+    std::string pattern = name_.string();
+    descriptor_ = ::mkostemp(pattern.data(), O_CLOEXEC);
+    if (descriptor_ < 0) {
+        fail("create");
+    }
+    name_ = pattern;
+    if (::fchmod(descriptor_, mode) != 0) {
+        fail("mode");
+    }
+}
 
-/* A file under a temporary name, removed unless it is renamed. */
-class TemporaryFile
+void AtomicFile::write(std::span<const std::uint8_t> bytes)
 {
-  public:
-    TemporaryFile(const std::filesystem::path &target, unsigned mode)
-        : target_(target), name_(target.parent_path() / ("." + target.filename().string() + ".XXXXXX"))
-    {
-        std::string pattern = name_.string();
-        descriptor_ = ::mkostemp(pattern.data(), O_CLOEXEC);
-        if (descriptor_ < 0) {
-            fail("create");
+    while (!bytes.empty()) {
+        const ssize_t sent = ::write(descriptor_, bytes.data(), bytes.size());
+        if (sent < 0 && errno == EINTR) {
+            continue;
         }
-        name_ = pattern;
-        if (::fchmod(descriptor_, mode) != 0) {
-            fail("mode");
+        if (sent < 0) {
+            fail("write");
         }
+        bytes = bytes.subspan(static_cast<std::size_t>(sent));
     }
-    TemporaryFile(const TemporaryFile &) = delete;
-    TemporaryFile &operator=(const TemporaryFile &) = delete;
-    ~TemporaryFile() { discard(); }
+}
 
-    void write(std::span<const std::uint8_t> bytes)
-    {
-        while (!bytes.empty()) {
-            const ssize_t sent = ::write(descriptor_, bytes.data(), bytes.size());
-            if (sent < 0 && errno == EINTR) {
-                continue;
-            }
-            if (sent < 0) {
-                fail("write");
-            }
-            bytes = bytes.subspan(static_cast<std::size_t>(sent));
-        }
+void AtomicFile::complete()
+{
+    if (::fsync(descriptor_) != 0) {
+        fail("fsync");
     }
+    const int descriptor = descriptor_;
+    descriptor_ = -1;
+    if (::close(descriptor) != 0) {
+        fail("close");
+    }
+    if (::rename(name_.c_str(), target_.c_str()) != 0) {
+        fail("rename");
+    }
+    name_.clear();
+}
 
-    void rename_to_target()
-    {
-        if (::fsync(descriptor_) != 0) {
-            fail("fsync");
-        }
-        const int descriptor = descriptor_;
+void AtomicFile::discard()
+{
+    if (descriptor_ >= 0) {
+        ::close(descriptor_);
         descriptor_ = -1;
-        if (::close(descriptor) != 0) {
-            fail("close");
-        }
-        if (::rename(name_.c_str(), target_.c_str()) != 0) {
-            fail("rename");
-        }
+    }
+    if (!name_.empty()) {
+        ::unlink(name_.c_str());
         name_.clear();
     }
+}
 
-  private:
-    void discard()
-    {
-        if (descriptor_ >= 0) {
-            ::close(descriptor_);
-            descriptor_ = -1;
-        }
-        if (!name_.empty()) {
-            ::unlink(name_.c_str());
-            name_.clear();
-        }
-    }
-
-    /* A constructor that throws runs no destructor, so the file goes here. */
-    [[noreturn]] void fail(const char *step)
-    {
-        const std::string reason = std::strerror(errno);
-        discard();
-        throw InputError(target_.string(), step, reason);
-    }
-
-    std::filesystem::path target_;
-    std::filesystem::path name_;
-    int descriptor_ = -1;
-};
-
-} // namespace
+/* A constructor that throws runs no destructor, so the file goes here. */
+void AtomicFile::fail(const char *step)
+{
+    const std::string reason = std::strerror(errno);
+    discard();
+    throw InputError(target_.string(), step, reason);
+}
 
 void write_file_atomically(const std::filesystem::path &file, std::span<const std::uint8_t> bytes, unsigned mode)
 {
-    TemporaryFile out(file, mode);
+    AtomicFile out(file, mode);
     out.write(bytes);
-    out.rename_to_target();
+    out.complete();
 }
 
 void write_file_atomically(const std::filesystem::path &file, std::string_view text, unsigned mode)

@@ -5,8 +5,6 @@
  */
 #include "tsr/host/pcapng.h"
 
-#include "tsr/host/atomic_file.h"
-
 namespace tsr
 {
 
@@ -23,6 +21,8 @@ constexpr std::uint16_t kLinkType802154Tap = 283;
 constexpr std::uint16_t kTapFcsType = 0;
 constexpr std::uint8_t kFcs16Bit = 1;
 constexpr std::uint16_t kTapChannelAssignment = 3;
+
+constexpr std::size_t kBufferLen = std::size_t{1} << 16;
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -66,7 +66,7 @@ Bytes tap_header(std::uint8_t channel)
 
 } // namespace
 
-PcapngCapture::PcapngCapture()
+PcapngCapture::PcapngCapture(const std::filesystem::path &file) : file_(file)
 {
     Bytes section;
     put32(section, kByteOrderMagic);
@@ -95,12 +95,21 @@ void PcapngCapture::add(std::uint64_t time_us, std::uint8_t channel, std::span<c
     packet.insert(packet.end(), header.begin(), header.end());
     packet.insert(packet.end(), psdu.begin(), psdu.end());
     put_block(bytes_, kEnhancedPacket, packet);
-    ++frames_;
+    if (bytes_.size() >= kBufferLen) {
+        flush();
+    }
 }
 
-void PcapngCapture::write(const std::filesystem::path &file) const
+void PcapngCapture::flush()
 {
-    write_file_atomically(file, bytes_);
+    file_.write(bytes_);
+    bytes_.clear();
+}
+
+void PcapngCapture::complete()
+{
+    flush();
+    file_.complete();
 }
 
 } // namespace tsr

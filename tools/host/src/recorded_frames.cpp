@@ -54,7 +54,7 @@ void check_same(const RecordedFrames &frames, const SitePair &pair)
 } // namespace
 
 RecordedFrames::RecordedFrames(fs::path folder, std::uint32_t period_ms, std::size_t cache_max)
-    : folder_(std::move(folder)), cache_max_(cache_max)
+    : folder_(std::move(folder)), period_ms_(period_ms), cache_max_(cache_max)
 {
     if (period_ms < 1) {
         throw InputError(folder_.string(), "period_ms", "is 0");
@@ -67,7 +67,7 @@ RecordedFrames::RecordedFrames(fs::path folder, std::uint32_t period_ms, std::si
     if (fs::exists(times_file, error)) {
         read_times(times_file);
     } else {
-        list_folder(period_ms);
+        list_folder();
     }
     if (entries_.empty()) {
         throw InputError(folder_.string(), "", "holds no frames (.pgm, .png, .jpg, .jpeg)");
@@ -75,7 +75,7 @@ RecordedFrames::RecordedFrames(fs::path folder, std::uint32_t period_ms, std::si
     check_sizes();
 }
 
-void RecordedFrames::list_folder(std::uint32_t period_ms)
+void RecordedFrames::list_folder()
 {
     std::error_code error;
     std::vector<fs::path> files;
@@ -89,7 +89,7 @@ void RecordedFrames::list_folder(std::uint32_t period_ms)
     }
     std::sort(files.begin(), files.end());
     for (std::size_t i = 0; i < files.size(); i++) {
-        entries_.push_back({files[i], std::uint64_t{period_ms} * i, nullptr});
+        entries_.push_back({files[i], std::uint64_t{period_ms_} * i, nullptr});
     }
 }
 
@@ -142,6 +142,12 @@ void RecordedFrames::check_sizes()
     if (size_.width > TSR_IMAGE_WIDTH_MAX || size_.height > TSR_IMAGE_HEIGHT_MAX) {
         throw InputError(entries_.front().file.string(), "size", shown(size_) + ", a node's frame is at most 640x480");
     }
+}
+
+std::uint64_t RecordedFrames::length_ms() const
+{
+    const std::size_t last = entries_.size() - 1;
+    return last == 0 ? period_ms_ : 2 * entries_[last].time_ms - entries_[last - 1].time_ms;
 }
 
 std::size_t RecordedFrames::index_at(std::uint64_t time_ms) const

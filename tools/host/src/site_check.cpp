@@ -34,6 +34,9 @@ NodeIndex index_nodes(const Site &site)
         if (node.watch_period_ms < 1 || node.watch_period_ms > kWatchPeriodMsMax) {
             refuse_node(site, node, "watch_period_ms", "is outside 1.." + std::to_string(kWatchPeriodMsMax));
         }
+        if (node.start_ms > kStartMsMax) {
+            refuse_node(site, node, "start_ms", "is outside 0.." + std::to_string(kStartMsMax));
+        }
         for (const double metres : node.position_m) {
             if (!(std::abs(metres) <= kPositionMaxM)) {
                 refuse_node(site, node, "position_m", "is farther than 1000 km");

@@ -56,6 +56,7 @@ SiteNode read_node(TomlFields &fields)
     node.frames_right = fields.string("frames_right", "");
     node.watch_period_ms =
         static_cast<std::uint32_t>(fields.integer("watch_period_ms", 1, kWatchPeriodMsMax, node.watch_period_ms));
+    node.start_ms = static_cast<std::uint32_t>(fields.integer("start_ms", 0, kStartMsMax, node.start_ms));
     for (const auto &[x, y, width, height] : fields.lists<4>("watch", 0, kWatchSideMax)) {
         node.watch.push_back({x, y, width, height});
     }

@@ -105,6 +105,7 @@ std::string node_text(const SiteNode &node)
         text += line("frames_right", quoted(node.frames_right.string()));
     }
     text += line("watch_period_ms", std::to_string(node.watch_period_ms));
+    text += line("start_ms", std::to_string(node.start_ms));
     std::string watch;
     for (const SiteRectangle &area : node.watch) {
         const std::array<double, 4> values{double(area.x), double(area.y), double(area.width), double(area.height)};

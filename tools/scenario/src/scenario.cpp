@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <sstream>
 
 #include "tsr/host/input_error.h"
 #include "tsr/host/site_fields.h"
@@ -18,6 +19,14 @@ namespace
 {
 
 constexpr double kDayS = 86'400;
+constexpr int kCrowdMax = 10'000; /* pairs */
+
+std::string shown(double value)
+{
+    std::ostringstream text;
+    text << value;
+    return text.str();
+}
 
 /* A field that means nothing in this kind of scene is refused, as an unknown one. */
 bool has_people(const std::string &kind)
@@ -118,6 +127,56 @@ void read_camera(TomlFields &fields, ScenarioCamera &camera)
     fields.refuse_unknown();
 }
 
+constexpr double kSpacingMinM = 0.1;
+constexpr double kAreaMaxM = 1e5;
+constexpr double kSpacingM = 15; /* well within kReachM, so that a tree is found */
+
+/* Two numbers of one range, the second not below the first if they are ordered. */
+void read_range(TomlFields &fields, const char *field, double minimum, double maximum, bool ordered,
+                std::array<double, 2> &values)
+{
+    fields.numbers(field, values.data(), values.size(), false);
+    for (const double value : values) {
+        if (!(value >= minimum && value <= maximum)) {
+            fields.refuse(field, "is not two numbers of " + shown(minimum) + ".." + shown(maximum));
+        }
+    }
+    if (ordered && values[0] > values[1]) {
+        fields.refuse(field, "ends before it begins");
+    }
+}
+
+void read_recorded(TomlFields &fields, ScenarioRecorded &recorded)
+{
+    recorded.site = fields.string("site");
+    if (fields.has("area_m") && fields.has("spacing_m")) {
+        fields.refuse("area_m", "stands beside spacing_m: pairs are on a grid or anywhere, not both");
+    }
+    if (fields.has("area_m")) {
+        read_range(fields, "area_m", kSpacingMinM, kAreaMaxM, false, recorded.area_m);
+    } else {
+        recorded.spacing_m = fields.number("spacing_m", kSpacingMinM, 1000, kSpacingM);
+    }
+    recorded.pause_s = fields.number("pause_s", 0, kDayS, recorded.pause_s);
+    recorded.offset_s = {0, kDayS};
+    read_range(fields, "offset_s", 0, kDayS, true, recorded.offset_s);
+    fields.refuse_unknown();
+}
+
+/* What the recorded site does not say of its own pairs. */
+void read_recorded_pairs(TomlFields &fields, ScenarioRecorded &recorded)
+{
+    recorded.count = static_cast<int>(fields.integer("count", 1, kCrowdMax));
+    if (fields.has("watch_period_ms")) {
+        recorded.watch_period_ms = static_cast<std::uint32_t>(fields.integer("watch_period_ms", 1, kWatchPeriodMsMax));
+    }
+    if (fields.has("reference_image")) {
+        recorded.reference_image = fields.boolean("reference_image", true);
+    }
+    recorded.start_within_s = fields.number("start_within_s", 0, kStartMsMax / 1000.0, recorded.start_within_s);
+    fields.refuse_unknown();
+}
+
 /* A recording can be played on; a scenario says itself when it ends. */
 void refuse_late_faults(const Scenario &scenario)
 {
@@ -137,12 +196,27 @@ template <typename Read, typename Value> void read_table(TomlFields &top, const 
     }
 }
 
+/* In the place of scene, pairs and camera. */
+void read_crowd(TomlFields &top, Scenario &scenario)
+{
+    for (const char *other : {"scene", "camera"}) {
+        if (top.has(other)) {
+            top.refuse(other, "stands beside recorded: pictures are rendered or recorded, not both");
+        }
+    }
+    if (!top.has("pairs")) {
+        top.refuse("pairs", "is missing: recorded needs its count");
+    }
+    read_table(top, "recorded", read_recorded, scenario.recorded.emplace());
+    read_table(top, "pairs", read_recorded_pairs, *scenario.recorded);
+}
+
 } // namespace
 
 bool is_scenario_file(const std::filesystem::path &file)
 {
     const TomlFile toml(file);
-    return toml.top().has("scene");
+    return toml.top().has("scene") || toml.top().has("recorded");
 }
 
 Scenario load_scenario(const std::filesystem::path &file, const std::vector<std::string> &settings)
@@ -156,12 +230,15 @@ Scenario load_scenario(const std::filesystem::path &file, const std::vector<std:
         top.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), static_cast<std::int64_t>(scenario.seed)));
     scenario.scene.duration_s = top.number("duration_s", 10, kDayS, scenario.scene.duration_s);
     scenario.scene.seed = scenario.seed;
-    if (!top.has("scene")) {
-        top.refuse("scene", "is missing");
+    if (top.has("recorded")) {
+        read_crowd(top, scenario);
+    } else if (top.has("scene")) {
+        read_table(top, "scene", read_scene, scenario.scene);
+        read_table(top, "pairs", read_pairs, scenario.pairs);
+        read_table(top, "camera", read_camera, scenario.camera);
+    } else {
+        top.refuse("scene", "is missing, and so is recorded");
     }
-    read_table(top, "scene", read_scene, scenario.scene);
-    read_table(top, "pairs", read_pairs, scenario.pairs);
-    read_table(top, "camera", read_camera, scenario.camera);
     read_table(top, "radio", read_radio, scenario.radio);
     read_table(top, "thresholds", read_thresholds, scenario.thresholds);
     read_table(top, "battery", read_battery, scenario.battery);

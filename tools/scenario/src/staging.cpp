@@ -131,6 +131,10 @@ void place_pairs(Staging &staging, const Scenario &scenario)
 
 Staging stage_scenario(const Scenario &scenario)
 {
+    if (scenario.recorded) {
+        throw InputError(scenario.file.string(), "recorded",
+                         "there is no scene to render: its frames are there already");
+    }
     Staging staging;
     staging.scene = std::make_unique<scene::Scene>(scene::make_scene(scenario.scene, scenario.pairs.layout));
     staging.geometry = std::make_unique<scene::Geometry>(staging.scene->world);

@@ -7,6 +7,7 @@
 #ifndef TSR_EMULATOR_EVENT_QUEUE_H
 #define TSR_EMULATOR_EVENT_QUEUE_H
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <queue>
@@ -33,7 +34,7 @@ class EventQueue
     struct Event {
         std::uint64_t time_us;
         std::uint64_t number;
-        Action action;
+        std::size_t action; /* its place in actions_, so that a heap of events moves little */
         bool operator<(const Event &other) const
         { /* the greatest is run first */
             return time_us != other.time_us ? time_us > other.time_us : number > other.number;
@@ -41,6 +42,8 @@ class EventQueue
     };
 
     std::priority_queue<Event> events_;
+    std::vector<Action> actions_;
+    std::vector<std::size_t> free_; /* places in actions_ */
     std::uint64_t now_us_ = 0;
     std::uint64_t numbers_ = 0;
 };

@@ -45,6 +45,8 @@ class FaultTimeline
     explicit FaultTimeline(const World &world) : world_(world) {}
 
     /* All of a site, before time runs. */
+    /* A node that is off until then. */
+    void start_later(EmulatedNode &node, std::uint64_t time_us);
     void schedule(const std::vector<SiteFault> &faults);
     /* One, now, whatever its at_us says. */
     void strike(const SiteFault &fault);
@@ -64,6 +66,7 @@ class FaultTimeline
     EmulatedNode &node(std::uint16_t id);
     void kill(EmulatedNode &node);
     bool restart(EmulatedNode &node, const SiteFault &fault);
+    void start_at(EmulatedNode &node, std::uint64_t time_us, std::uint32_t counter_start);
     void drift(EmulatedNode &node, const SiteFault &fault);
     void lose_link(EmulatedNode &node, const SiteFault &fault);
     void fail_camera(EmulatedNode &node, const SiteFault &fault);

@@ -51,6 +51,8 @@ class Simulation
     Simulation(const Simulation &) = delete;
     Simulation &operator=(const Simulation &) = delete;
 
+    /* Every frame on air goes there. capture is kept. Call before run(). */
+    void record_air(PcapngCapture &capture) { capture_ = &capture; }
     void run(const Progress &progress);
 
     std::uint64_t duration_us() const { return queue_.now_us(); }
@@ -60,7 +62,6 @@ class Simulation
     const FaultTimeline &faults() const { return *faults_; }
     /* When a node's clock showed a time. */
     std::uint64_t virtual_us(std::uint16_t node, std::uint64_t local_us) const;
-    const PcapngCapture &capture() const { return capture_; }
     const AirTally &air_tally(std::size_t node_index) const { return air_tallies_.at(node_index); }
     /* Whether everything was delivered before patience ended. */
     bool quiet() const;
@@ -82,7 +83,8 @@ class Simulation
 
     std::vector<PhaseChange> timeline_;
     std::vector<AirTally> air_tallies_;
-    PcapngCapture capture_;
+    mutable std::size_t last_busy_ = 0; /* a node's index, where quiet() looks first */
+    PcapngCapture *capture_ = nullptr;  /* may stay null */
 };
 
 } // namespace tsr

@@ -118,11 +118,15 @@ class Air
     void sense(Radio &radio);
     void send_data(Radio &radio);
     void send_ack(Radio &radio, Radio &to, std::uint64_t asker_life, std::uint8_t sequence, std::uint64_t frame_end_us);
-    std::shared_ptr<Transmission> begin(Radio &sender, std::vector<std::uint8_t> psdu);
+    std::shared_ptr<Transmission> begin(Radio &sender, std::vector<std::uint8_t> psdu, Radio *acknowledges);
     void cut(Radio &sender);
-    void arrive(const Transmission &transmission);
-    std::vector<Receipt> leave(const Transmission &transmission);
-    void end(const Transmission &transmission);
+    void arrive(Transmission &transmission);
+    void fade(Transmission &transmission);
+    void fade_ended();
+    std::vector<int> levels_at(std::size_t radio, std::uint8_t channel) const;
+    static bool is_for(const Transmission &transmission, const Radio &radio);
+    std::vector<Receipt> leave(Transmission &transmission);
+    void end(Transmission &transmission);
     void end_data(const Transmission &transmission, AirFrame frame, AirFate fate, const std::vector<Receipt> &heard);
     void end_ack(const Transmission &transmission, AirFrame frame, AirFate fate, const std::vector<Receipt> &heard);
     std::uint64_t broadcast_losses(const Transmission &transmission, std::uint64_t got) const;
@@ -136,7 +140,7 @@ class Air
     std::uint64_t seed_;
     bool cca_at_end_;
     air::Propagation propagation_;
-    air::ReceiverModel receivers_;
+    air::ReceiverModel receiver_model_;
     air::Neighbours neighbours_;
     air::LinkLosses losses_;
     std::uint64_t kept_q32_; /* part of the frames that frame_loss leaves */
@@ -146,6 +150,9 @@ class Air
     std::uint64_t transmissions_ = 0;
     std::uint64_t arrivals_ = 0;
     std::vector<std::unique_ptr<Radio>> radios_;
+    std::vector<air::Receiver> receivers_; /* of the radios, side by side: a transmission visits many of them */
+    std::vector<Transmission *> on_air_;   /* that have not faded */
+    std::uint64_t next_fade_us_ = UINT64_MAX;
 };
 
 } // namespace tsr

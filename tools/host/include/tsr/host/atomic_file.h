@@ -16,6 +16,29 @@
 namespace tsr
 {
 
+/* One that is written piece by piece; gone unless it is completed. */
+class AtomicFile
+{
+  public:
+    /* mode as below. All throw InputError naming target; the temporary is gone then. */
+    explicit AtomicFile(const std::filesystem::path &target, unsigned mode = 0644);
+    ~AtomicFile() { discard(); }
+    AtomicFile(const AtomicFile &) = delete;
+    AtomicFile &operator=(const AtomicFile &) = delete;
+
+    void write(std::span<const std::uint8_t> bytes);
+    /* From now on it is there under its name. Call last. */
+    void complete();
+
+  private:
+    void discard();
+    [[noreturn]] void fail(const char *step);
+
+    std::filesystem::path target_;
+    std::filesystem::path name_;
+    int descriptor_ = -1;
+};
+
 /* mode is the file's permission bits, exact (umask does not apply).
  * Throws InputError naming file; the temporary is gone then. */
 void write_file_atomically(const std::filesystem::path &file, std::span<const std::uint8_t> bytes,

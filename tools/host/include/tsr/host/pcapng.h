@@ -15,22 +15,26 @@
 #include <span>
 #include <vector>
 
+#include "tsr/host/atomic_file.h"
+
 namespace tsr
 {
 
 class PcapngCapture
 {
   public:
-    PcapngCapture();
+    /* Frames go to the disk as they come. Throws InputError. */
+    explicit PcapngCapture(const std::filesystem::path &file);
     /* psdu includes its FCS. */
     void add(std::uint64_t time_us, std::uint8_t channel, std::span<const std::uint8_t> psdu);
-    std::size_t frames() const { return frames_; }
-    /* Written at once, complete or not at all. Throws InputError. */
-    void write(const std::filesystem::path &file) const;
+    /* The file is there, complete or not at all. Throws InputError. Call last. */
+    void complete();
 
   private:
-    std::vector<std::uint8_t> bytes_;
-    std::size_t frames_ = 0;
+    void flush();
+
+    AtomicFile file_;
+    std::vector<std::uint8_t> bytes_; /* not yet in the file */
 };
 
 } // namespace tsr

@@ -46,6 +46,8 @@ class RecordedFrames
     const std::filesystem::path &folder() const { return folder_; }
     const std::filesystem::path &file(std::size_t index) const { return entries_.at(index).file; }
     std::uint64_t time_ms(std::size_t index) const { return entries_.at(index).time_ms; }
+    /* Until the last frame has been shown as long as the one before it; one period_ms if it is alone. */
+    std::uint64_t length_ms() const;
     /* The newest frame not later than time_ms; the first one before that. */
     std::size_t index_at(std::uint64_t time_ms) const;
     /* Throws InputError if the file does not hold what its header promised. */
@@ -58,7 +60,7 @@ class RecordedFrames
         std::shared_ptr<const GrayImage> pixels; /* null: not in the cache */
     };
 
-    void list_folder(std::uint32_t period_ms);
+    void list_folder();
     void read_times(const std::filesystem::path &times_file);
     void check_sizes();
 
@@ -66,6 +68,7 @@ class RecordedFrames
     std::vector<Entry> entries_;
     std::deque<std::size_t> cached_; /* oldest first */
     ImageSize size_;
+    std::uint32_t period_ms_;
     std::size_t cache_max_;
 };
 

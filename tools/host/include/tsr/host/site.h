@@ -32,7 +32,8 @@ namespace tsr
 inline constexpr std::uint16_t kNodeNone = 0; /* no such node: a gateway's parent, a binocular pair's wing */
 inline constexpr std::uint16_t kNodeIdMax = 0xfffd;
 inline constexpr std::uint32_t kWatchPeriodMsMax = 3'600'000; /* in us it fits the firmware's 32 bits */
-inline constexpr double kPositionMaxM = 1e6;                  /* of any coordinate */
+inline constexpr std::uint32_t kStartMsMax = 86'400'000;
+inline constexpr double kPositionMaxM = 1e6; /* of any coordinate */
 
 enum class Role {
     gateway,  /* the root of the tree; joined to the sink by the gateway link */
@@ -93,6 +94,7 @@ struct SiteNode {
     std::filesystem::path frames;       /* folder of the lead's, wing's or left camera's frames; may be empty */
     std::filesystem::path frames_right; /* binocular only */
     std::uint32_t watch_period_ms = 1000;
+    std::uint32_t start_ms = 0;       /* power-on, virtual time */
     std::vector<SiteRectangle> watch; /* lead, binocular: where a change wakes; empty = everywhere */
     int line = 0;                     /* in site.toml; 0 = built in memory */
 };

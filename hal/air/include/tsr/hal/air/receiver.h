@@ -18,7 +18,7 @@
 #define TSR_HAL_AIR_RECEIVER_H
 
 #include <cstdint>
-#include <vector>
+#include <span>
 
 #include "tsr/hal/air/model.h"
 #include "tsr/hal/air/packet_error.h"
@@ -34,6 +34,7 @@ struct ReceiverModel {
     int noise_q4;        /* dBm, from the sensitivity: receivers differ in nothing else */
     int interference_q4; /* dB that a frame counts for more than noise of its level; may be negative */
     int capture_q4;      /* dB that takes a receiver over */
+    int lock_min_q4;     /* dBm: below it noise alone hides a preamble */
     std::uint64_t noise;
     std::uint64_t cca_threshold;
     /* Links below this level, dBm, change no SINR by more than 0.41 dB: they are 10 dB below the noise. */
@@ -51,23 +52,34 @@ struct Signal {
 
 /* How a transmission ended for one receiver. */
 struct Outcome {
-    std::uint64_t success_q32 = 0; /* probability that its frame is right: 0 if another or none was followed */
-    int level_q4 = 0;              /* dBm */
+    /* Probability that its frame is right: 0 if another, none, or one nobody wants was followed. */
+    std::uint64_t success_q32 = 0;
+    int level_q4 = 0; /* dBm */
 };
 
+/*
+ * What is on air is kept as two sums of powers, so that a transmission costs a receiver the same however many there
+ * are: whoever tells of a signal's begin() tells of its fade() too, before anything else happens at that instant.
+ */
 class Receiver
 {
   public:
     /* model is kept. */
     explicit Receiver(const ReceiverModel &model) : model_(&model) {}
 
-    void tune(std::uint8_t channel, std::uint64_t now_us);
+    /* levels_q4: of what is on air there. It loses the frame it follows, on whatever channel: what comes next may be
+     * wanted otherwise. */
+    void tune(std::uint8_t channel, std::span<const int> levels_q4, std::uint64_t now_us);
     /* A deaf receiver loses the frame it follows. */
     void listen(bool on, std::uint64_t now_us);
-    /* A transmission begins; now is its start. */
-    void begin(const Signal &signal);
-    /* It ends. */
-    Outcome end(std::uint64_t number, std::uint64_t now_us);
+    /* A transmission begins; now is its start. True: the receiver follows it from now on. */
+    bool begin(const Signal &signal);
+    /* Nobody asks how probable the frame is that it follows. The receiver is busy with it all the same. */
+    void disregard() { wanted_ = false; }
+    /* A transmission of this level and channel is heard no more: its end, or its sender's. */
+    void fade(int level_q4, std::uint8_t channel, std::uint64_t now_us);
+    /* It ends, having faded. */
+    Outcome end(std::uint64_t number);
 
     /* Between these the channel was clear if neither energy nor a frame was found (CCA mode 3 with OR,
      * IEEE 802.15.4-2006, 6.9.9: energy alone, its mode 1, decides where no preamble was heard). */
@@ -75,19 +87,21 @@ class Receiver
     bool finish_cca();
 
   private:
-    std::uint64_t interference(std::uint64_t but_number, std::uint64_t now_us) const;
-    int sinr_q4(const Signal &signal, std::uint64_t now_us) const;
+    void add(int level_q4);
+    bool takes(const Signal &signal) const;
     void settle(std::uint64_t now_us);
     void sense(std::uint64_t now_us);
 
     const ReceiverModel *model_;
-    std::vector<Signal> signals_; /* on air here, on whatever channel */
-    Signal followed_;
-    bool locked_ = false;
+    std::uint64_t energy_ = 0;       /* of all on the channel */
+    std::uint64_t interference_ = 0; /* the same, with the weight that a frame has against noise */
+    std::uint8_t channel_ = 0;
     bool listening_ = false;
+    bool locked_ = false;
+    bool wanted_ = false;
     bool sensing_ = false;
     bool found_ = false; /* by the CCA under way */
-    std::uint8_t channel_ = 0;
+    Signal followed_;
     std::uint64_t settled_us_ = 0; /* success_q32_ holds for the frame until then */
     std::uint64_t success_q32_ = 0;
 };
