@@ -46,6 +46,7 @@ std::array<double, 2> range_of(const std::vector<Point> &points, std::size_t axi
         return {0, 0};
     }
     std::vector<float> values;
+    values.reserve(points.size());
     for (const Point &point : points) {
         values.push_back(point.position_m.at(axis));
     }

@@ -1,6 +1,9 @@
 /* Tables of records. SPDX-License-Identifier: Apache-2.0 */
 #include "tsr/emulator/table.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "tsr/emulator/record_json.h"
 
 namespace tsr
@@ -14,34 +17,37 @@ using Json = nlohmann::ordered_json;
 /* What differs from node to node in its keys has no columns. */
 constexpr const char *kNoColumns = "work";
 
-/* Columns are the leaves of an example that has them all; a path is a JSON pointer. */
-void find_leaves(const Json &example, const std::string &path, const std::string &name, Table &table,
-                 std::vector<Json::json_pointer> &paths)
+/* The leaves of an example that has them all. */
+void find_leaves(const Json &example, const Json::json_pointer &path, std::vector<Json::json_pointer> &leaves)
 {
     for (const auto &[key, value] : example.items()) {
-        const std::string column = name.empty() ? key : name + "_" + key;
-        if (key == kNoColumns) {
-            continue;
-        }
-        if (value.is_object()) {
-            find_leaves(value, path + "/" + key, column, table, paths);
-        } else {
-            table.columns.push_back(column);
-            paths.emplace_back(path + "/" + key);
+        if (value.is_object() && key != kNoColumns) {
+            find_leaves(value, path / key, leaves);
+        } else if (!value.is_object()) {
+            leaves.push_back(path / key);
         }
     }
 }
 
+std::string column_of(const Json::json_pointer &leaf)
+{
+    std::string name = leaf.to_string().substr(1);
+    std::replace(name.begin(), name.end(), '/', '_');
+    return name;
+}
+
 template <typename Record> Table table_of(const Record &example, const std::vector<Record> &records)
 {
+    std::vector<Json::json_pointer> leaves;
+    find_leaves(json_of(example), Json::json_pointer(), leaves);
     Table table;
-    std::vector<Json::json_pointer> paths;
-    find_leaves(json_of(example), "", "", table, paths);
+    std::transform(leaves.begin(), leaves.end(), std::back_inserter(table.columns), column_of);
     for (const Record &record : records) {
         const Json json = json_of(record);
         std::vector<Json> &row = table.rows.emplace_back();
-        for (const auto &path : paths) {
-            row.push_back(json.contains(path) ? json.at(path) : Json());
+        row.reserve(leaves.size());
+        for (const auto &leaf : leaves) {
+            row.push_back(json.contains(leaf) ? json.at(leaf) : Json());
         }
     }
     return table;
