@@ -38,6 +38,7 @@ namespace
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kPairsPrinted = 20;              /* one by one; more are summed up */
 constexpr std::uint64_t kSeedMax = 0x7fffffffffffffff; /* TOML integers are signed */
 
 struct Options {
@@ -173,20 +174,30 @@ tsr::Site with_absolute_folders(tsr::Site site)
     return site;
 }
 
+void print_counts(const char *name, const nlohmann::ordered_json &counts)
+{
+    std::printf("%s: %d frames watched, %d woken, %d maps made, %d withheld, %d sent, %d received, %d lost\n", name,
+                counts.at("frames_watched").get<int>(), counts.at("frames_woken").get<int>(),
+                counts.at("maps_made").get<int>(), counts.at("maps_withheld").get<int>(),
+                counts.at("maps_sent").get<int>(), counts.at("maps_received").get<int>(),
+                counts.at("maps_lost").get<int>());
+}
+
 void print_result(const fs::path &out, const nlohmann::ordered_json &summary)
 {
-    for (const auto &pair : summary.at("pairs")) {
-        std::printf("%s: %d frames watched, %d woken, %d maps made, %d withheld, %d sent, %d received, %d lost\n",
-                    pair.at("name").get<std::string>().c_str(), pair.at("frames_watched").get<int>(),
-                    pair.at("frames_woken").get<int>(), pair.at("maps_made").get<int>(),
-                    pair.at("maps_withheld").get<int>(), pair.at("maps_sent").get<int>(),
-                    pair.at("maps_received").get<int>(), pair.at("maps_lost").get<int>());
-        for (const auto &map : pair.at("maps")) {
-            if (map.contains("error")) {
-                std::printf("  map at %.1f s: median error %.3f px, %.1f mm; %.1f %% of the pixels correct\n",
-                            map.at("capture_time_s").get<double>(), map.at("error").at("median_px").get<double>(),
-                            map.at("error").at("median_mm").get<double>(),
-                            100 * map.at("error").at("correct").get<double>());
+    const auto &pairs = summary.at("pairs");
+    if (pairs.size() > kPairsPrinted) {
+        print_counts((std::to_string(pairs.size()) + " pairs").c_str(), summary.at("totals"));
+    } else {
+        for (const auto &pair : pairs) {
+            print_counts(pair.at("name").get<std::string>().c_str(), pair);
+            for (const auto &map : pair.at("maps")) {
+                if (map.contains("error")) {
+                    std::printf("  map at %.1f s: median error %.3f px, %.1f mm; %.1f %% of the pixels correct\n",
+                                map.at("capture_time_s").get<double>(), map.at("error").at("median_px").get<double>(),
+                                map.at("error").at("median_mm").get<double>(),
+                                100 * map.at("error").at("correct").get<double>());
+                }
             }
         }
     }
@@ -219,10 +230,16 @@ int run_site(const Options &options, const tsr::Site &site, const tsr::KeyRing &
     sink.finish();
 
     capture.complete();
-    const auto maps = tsr::read_received_maps(site, simulation, pictures, out.path());
-    const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const auto summary = tsr::make_summary(site, simulation, maps, sink.restarts(), wall_s);
-    tsr::write_page(out.path(), summary, simulation, maps);
+    tsr::RunRecord record =
+        tsr::gather(site, simulation, pictures, tsr::read_received_maps(site, simulation, pictures, out.path()),
+                    tsr::read_received_events(simulation, out.path()));
+    record.sink_restarts = sink.restarts();
+    record.wall_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const auto summary = tsr::make_summary(record);
+    const auto gallery = tsr::choose_maps(record);
+    tsr::write_truth_pictures(out.path(), gallery, pictures);
+    tsr::write_tables(out.path(), record);
+    tsr::write_page(out.path(), summary, record, gallery);
     tsr::write_file_atomically(out.file("summary.json"), summary.dump(2) + "\n");
     out.keep();
     print_result(out.path(), summary);

@@ -258,9 +258,9 @@ void EmulatedNode::step()
 void EmulatedNode::note_phase(tsr_node_phase phase)
 {
     if (phase != phase_) {
-        phase_ = phase;
+        const tsr_node_phase before = std::exchange(phase_, phase);
         if (around_.phase_changed) {
-            around_.phase_changed({around_.queue.now_us(), id(), phase});
+            around_.phase_changed({around_.queue.now_us(), id(), phase, before});
         }
     }
 }

@@ -1,25 +1,36 @@
 /*
- * index.html: the page template with the run's data put in.
+ * index.html: the page with the run's data put in.
  *
- * The template (emulator/page/page.html) holds one mark, kDataMark, which
- * becomes a JSON object:
+ * The page (emulator/page/) holds one mark, kDataMark, which becomes a JSON object:
  *
- *   summary   summary.json
- *   timeline  [{t: seconds, node: id, phase: name}, ...]
- *   maps      [{node, t, kept, disparity: PNG data URL, reference: PNG data URL or ""}, ...]
- *   cloud     {count, positions: base64 of count x 3 float32, colours: base64 of count x 3 bytes}
+ *   summary   summary.json without nodes, pairs and links
+ *   played_s  how long there was something to see
+ *   nodes, links, maps   {of, columns, rows}: the tables of table.h; of: rows before they were thinned
+ *   timeline  {bin_s, looks, woken, committed, withheld, lost, failed}: numbers of each bin
+ *   episodes  {of, rows: [[node, from s, until s, fate], ...]}
+ *   phases    [[s, node, phase], ...] of work; empty if there are many
+ *   messages  {of, rows: [[s, node, kind], ...]}: committed ones that are no maps
+ *   events    [[s, what], ...] that the scene tells
+ *   gallery   [{pair, why, numbers, reference, map, truth, error}, ...]: numbers as in summary.json, PNG data URLs or
+ * "" gallery_of  how many were chosen: the last ones may not fit cloud     {of, count, low, step, positions, colours}:
+ * base64 of count x 3 uint16 and count x 3 bytes; position = low + step * value, m last_pair_share  of the cloud's
+ * points, those of the last pair: they are the last
+ *
+ * Lists are thinned evenly to what the limits below say, so that the page stays below 5 MB whatever was run;
+ * summary.json and the CSV tables have everything.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
 #include <algorithm>
-#include <cstring>
-#include <span>
+#include <cmath>
 #include <string_view>
 
+#include "page_data.h"
 #include "page_template.h"
+#include "tsr/emulator/record_json.h"
 #include "tsr/emulator/report.h"
+#include "tsr/emulator/table.h"
 #include "tsr/host/atomic_file.h"
-#include "tsr/host/input_error.h"
 #include "tsr/host/read_file.h"
 
 namespace tsr
@@ -31,26 +42,120 @@ namespace
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kDataMark = "/*TARSIER-DATA*/null";
-constexpr std::size_t kPlyVertexLen = 3 * sizeof(float) + 3; /* tsr/host/ply.h */
-constexpr std::size_t kPositionLen = 3 * sizeof(float);
+constexpr std::size_t kNodesMax = 2000;
+constexpr std::size_t kLinksMax = 4000;
+constexpr std::size_t kMapsMax = 3000;
+constexpr std::size_t kEpisodesMax = 5000;
+constexpr std::size_t kPhasesMax = 8000;
+constexpr std::size_t kMessagesMax = 3000;
+constexpr std::size_t kEventsMax = 500;
+constexpr std::size_t kBinsMax = 240;
+constexpr std::size_t kGalleryBytesMax = 1'600'000; /* as base64 */
 
-/* RFC 4648, section 4. */
-std::string base64(std::span<const std::uint8_t> bytes)
+double seconds(std::uint64_t time_us)
 {
-    static constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-        unsigned group = 0;
-        for (std::size_t j = 0; j < 3; ++j) {
-            group = group << 8 | (j < count ? bytes[i + j] : 0u);
-        }
-        for (std::size_t j = 0; j < 4; ++j) {
-            text.push_back(j <= count ? kAlphabet[group >> (18 - 6 * j) & 63u] : '=');
+    return std::round(static_cast<double>(time_us) / 1e3) / 1e3;
+}
+
+/* Every n-th, so that at most as many are left. */
+template <typename Rows, typename Print> Json thinned(const Rows &rows, std::size_t most, const Print &print)
+{
+    const std::size_t step = rows.size() > most ? (rows.size() + most - 1) / most : 1;
+    Json json = Json::array();
+    for (std::size_t i = 0; i < rows.size(); i += step) {
+        json.push_back(print(rows[i]));
+    }
+    return json;
+}
+
+Json table_json(const Table &table, std::size_t most)
+{
+    return {{"of", table.rows.size()},
+            {"columns", table.columns},
+            {"rows", thinned(table.rows, most, [](const auto &row) { return Json(row); })}};
+}
+
+std::size_t bin_s(std::uint64_t end_us)
+{
+    std::size_t width_s = 1;
+    for (const std::size_t factor : {2u, 5u, 10u, 15u, 30u, 60u, 120u, 300u, 600u, 900u, 1800u, 3600u}) {
+        if (end_us / 1'000'000 / width_s >= kBinsMax) {
+            width_s = factor;
         }
     }
-    return text;
+    while (end_us / 1'000'000 / width_s >= kBinsMax) {
+        width_s *= 2;
+    }
+    return width_s;
+}
+
+Json timeline_json(const RunRecord &run)
+{
+    const std::size_t width_s = bin_s(run.simulation->duration_us());
+    const std::size_t count = run.simulation->duration_us() / 1'000'000 / width_s + 1;
+    const auto bin_of = [&](std::uint64_t time_us) { return std::min(time_us / 1'000'000 / width_s, count - 1); };
+    std::vector<std::uint64_t> looks(count);
+    std::vector<std::uint64_t> woken(count);
+    std::map<Fate, std::vector<std::uint64_t>> fates;
+    for (const Fate fate : {Fate::committed, Fate::withheld, Fate::measured, Fate::lost, Fate::failed}) {
+        fates[fate].resize(count);
+    }
+    for (std::size_t second = 0; second < run.simulation->looks_per_s().size(); ++second) {
+        looks[bin_of(second * 1'000'000)] += run.simulation->looks_per_s()[second];
+    }
+    for (const Episode &episode : run.episodes) {
+        woken[bin_of(episode.from_us)] += episode.fate == Fate::view ? 0 : 1;
+        if (fates.contains(episode.fate)) {
+            ++fates[episode.fate][bin_of(episode.until_us)];
+        }
+    }
+    Json json{{"bin_s", width_s}, {"looks", looks}, {"woken", woken}};
+    for (const auto &[fate, numbers] : fates) {
+        json[fate_name(fate)] = numbers;
+    }
+    return json;
+}
+
+Json episodes_json(const RunRecord &run)
+{
+    const auto print = [](const Episode &episode) {
+        return Json::array(
+            {episode.node, seconds(episode.from_us), seconds(episode.until_us), fate_name(episode.fate)});
+    };
+    return {{"of", run.episodes.size()}, {"rows", thinned(run.episodes, kEpisodesMax, print)}};
+}
+
+/* What leads to a map or a view, with the rest that ends it. */
+Json phases_json(const RunRecord &run)
+{
+    Json json = Json::array();
+    for (const PhaseChange &change : run.simulation->timeline()) {
+        if (std::max(change.phase, change.before) > TSR_PHASE_WATCHING) {
+            json.push_back(Json::array({seconds(change.time_us), change.node, tsr_phase_name(change.phase)}));
+        }
+    }
+    return json.size() <= kPhasesMax ? json : Json::array();
+}
+
+Json messages_json(const RunRecord &run)
+{
+    std::vector<Commit> others;
+    for (const Commit &commit : run.simulation->traffic().commits()) {
+        if (commit.kind != message_index(TSR_MESSAGE_MAP)) {
+            others.push_back(commit);
+        }
+    }
+    const auto print = [](const Commit &commit) {
+        return Json::array({seconds(commit.time_us), commit.node, kMessageNames.at(commit.kind).name});
+    };
+    return {{"of", others.size()}, {"rows", thinned(others, kMessagesMax, print)}};
+}
+
+Json events_json(const RunRecord &run)
+{
+    return thinned(run.events, kEventsMax, [](const SceneEvent &event) {
+        return Json::array({seconds(event.time_us), event.what});
+    });
 }
 
 std::string png_url(const std::filesystem::path &file)
@@ -58,63 +163,74 @@ std::string png_url(const std::filesystem::path &file)
     return std::filesystem::exists(file) ? "data:image/png;base64," + base64(read_file(file)) : std::string();
 }
 
-Json maps_json(const std::filesystem::path &out, const std::vector<ReceivedMap> &maps)
+/* As many as fit, in the order of the choice. */
+Json gallery_json(const std::filesystem::path &out, const std::vector<GalleryMap> &gallery)
 {
     Json json = Json::array();
-    for (const ReceivedMap &map : maps) {
-        json.push_back({{"node", map.node},
-                        {"t", static_cast<double>(map.capture_time_us) / 1e6},
-                        {"kept", map.kept},
-                        {"disparity", png_url(out / (map.file + ".png"))},
-                        {"reference", png_url(out / (map.file + "-reference.png"))}});
+    std::size_t bytes = 0;
+    for (const GalleryMap &shown : gallery) {
+        const std::string file = (out / shown.map->file).string();
+        Json entry{{"pair", shown.pair != nullptr ? shown.pair->name : ""},
+                   {"why", shown.why},
+                   {"numbers", json_of(*shown.map)},
+                   {"reference", png_url(file + "-reference.png")},
+                   {"map", png_url(file + ".png")},
+                   {"truth", png_url(file + "-truth.png")},
+                   {"error", png_url(file + "-error.png")}};
+        for (const char *key : {"reference", "map", "truth", "error"}) {
+            bytes += entry.at(key).get_ref<const std::string &>().size();
+        }
+        if (bytes > kGalleryBytesMax) {
+            break;
+        }
+        json.push_back(std::move(entry));
     }
     return json;
 }
 
-/* Positions and colours of the PLY file that the sink wrote. */
-Json cloud_json(const std::filesystem::path &file)
+/* Where every pixel is a point, as in the demo. */
+double last_pair_share(const Site &site)
 {
-    const auto bytes = read_file(file);
-    const std::string_view text(reinterpret_cast<const char *>(bytes.data()), bytes.size());
-    constexpr std::string_view kEnd = "end_header\n";
-    const std::size_t header_end = text.find(kEnd);
-    if (header_end == std::string_view::npos) {
-        throw InputError(file.string(), "header", "has no end");
+    if (site.pairs.empty()) {
+        return 0;
     }
-    const std::span<const std::uint8_t> vertices(bytes.data() + header_end + kEnd.size(),
-                                                 bytes.size() - header_end - kEnd.size());
-    const std::size_t count = vertices.size() / kPlyVertexLen;
-    std::vector<std::uint8_t> positions;
-    std::vector<std::uint8_t> colours;
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto vertex = vertices.subspan(i * kPlyVertexLen, kPlyVertexLen);
-        positions.insert(positions.end(), vertex.begin(), vertex.begin() + kPositionLen);
-        colours.insert(colours.end(), vertex.begin() + kPositionLen, vertex.end());
+    double all = 0;
+    for (const SitePair &pair : site.pairs) {
+        all += static_cast<double>(pair.width) * pair.height;
     }
-    return {{"count", count}, {"positions", base64(positions)}, {"colours", base64(colours)}};
+    return static_cast<double>(site.pairs.back().width) * site.pairs.back().height / all;
 }
 
-Json timeline_json(const Simulation &simulation)
+Json summary_head(Json summary)
 {
-    Json json = Json::array();
-    for (const PhaseChange &change : simulation.timeline()) {
-        json.push_back({{"t", static_cast<double>(change.time_us) / 1e6},
-                        {"node", change.node},
-                        {"phase", tsr_phase_name(change.phase)}});
+    for (const char *key : {"nodes", "pairs", "links"}) {
+        summary.erase(key);
     }
-    return json;
+    Json &faults = summary.at("faults");
+    faults = thinned(faults, kEventsMax, [](const Json &fault) { return fault; });
+    return summary;
 }
 
 } // namespace
 
-void write_page(const std::filesystem::path &out, const Json &summary, const Simulation &simulation,
-                const std::vector<ReceivedMap> &maps)
+void write_page(const std::filesystem::path &out, const Json &summary, const RunRecord &run,
+                const std::vector<GalleryMap> &gallery)
 {
-    const Json data{{"summary", summary},
-                    {"timeline", timeline_json(simulation)},
-                    {"maps", maps_json(out, maps)},
-                    {"cloud", cloud_json(out / "cloud.ply")}};
-    /* "<" could end the script element that carries the data, or begin another. */
+    const Json data{{"summary", summary_head(summary)},
+                    {"played_s", seconds(run.simulation->played_us())},
+                    {"nodes", table_json(nodes_table(run), kNodesMax)},
+                    {"links", table_json(links_table(run), kLinksMax)},
+                    {"maps", table_json(maps_table(run), kMapsMax)},
+                    {"timeline", timeline_json(run)},
+                    {"episodes", episodes_json(run)},
+                    {"phases", phases_json(run)},
+                    {"messages", messages_json(run)},
+                    {"events", events_json(run)},
+                    {"gallery", gallery_json(out, gallery)},
+                    {"gallery_of", gallery.size()},
+                    {"cloud", cloud_json(out / "cloud.ply")},
+                    {"last_pair_share", last_pair_share(*run.site)}};
+    /* "<" could end the element that carries the data. */
     constexpr std::string_view kEscaped = "\\u003c";
     std::string text = data.dump();
     for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos; at += kEscaped.size()) {
@@ -123,6 +239,13 @@ void write_page(const std::filesystem::path &out, const Json &summary, const Sim
     std::string page = kPageTemplate;
     page.replace(page.find(kDataMark), kDataMark.size(), text);
     write_file_atomically(out / "index.html", page);
+}
+
+void write_tables(const std::filesystem::path &out, const RunRecord &run)
+{
+    write_file_atomically(out / "nodes.csv", csv_of(nodes_table(run)));
+    write_file_atomically(out / "links.csv", csv_of(links_table(run)));
+    write_file_atomically(out / "maps.csv", csv_of(maps_table(run)));
 }
 
 } // namespace tsr

@@ -3,7 +3,10 @@
  *
  * SPDX-License-Identifier: Apache-2.0
  */
-#include "tsr/emulator/report.h"
+#include "tsr/emulator/run_record.h"
+
+#include <nlohmann/json.hpp>
+
 #include "tsr/host/input_error.h"
 #include "tsr/host/read_file.h"
 

@@ -44,7 +44,7 @@ class SceneSource : public FrameSource
 } // namespace
 
 ScenePictures::ScenePictures(const Scenario &scenario, const Staging &staging, unsigned threads)
-    : scenario_(scenario), caster_(*staging.geometry), pool_(*staging.geometry, threads)
+    : scenario_(scenario), staging_(staging), caster_(*staging.geometry), pool_(*staging.geometry, threads)
 {
     for (const StagedCamera &staged : staging.cameras) {
         auto &camera = cameras_[{staged.node, staged.right}];
@@ -78,6 +78,15 @@ std::uint64_t ScenePictures::end_us() const
 std::optional<PairTruth> ScenePictures::truth(const SitePair &pair, std::uint64_t time_us)
 {
     return PairTruth{true_disparity(pair, camera(pair.lead, false)->truth(caster_, time_us)), pair.name};
+}
+
+std::vector<SceneEvent> ScenePictures::events() const
+{
+    std::vector<SceneEvent> events;
+    for (const scene::Event &event : staging_.scene->world.events) {
+        events.push_back({event.time_us, event.what});
+    }
+    return events;
 }
 
 } // namespace tsr

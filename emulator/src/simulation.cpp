@@ -35,7 +35,7 @@ AirModel air_model(const Site &site)
 const tsr_port_ops Simulation::kPortOps = {&Simulation::write_port};
 
 Simulation::Simulation(const Site &site, const KeyRing &keys, Pictures &pictures, SinkLink &sink)
-    : site_(site), pictures_(pictures), sink_(sink)
+    : site_(site), pictures_(pictures), sink_(sink), traffic_(site, keys)
 {
     Air::Clock clock;
     clock.now_us = [this] { return queue_.now_us(); };
@@ -59,6 +59,8 @@ Simulation::Simulation(const Site &site, const KeyRing &keys, Pictures &pictures
         ++tally.frames;
         tally.bytes += frame.psdu_len;
         tally.lost += frame.lost_at;
+        const bool acknowledges = frame.acknowledged != AirFrame::kNobody;
+        traffic_.count(frame, nodes_[frame.sender]->id(), acknowledges ? nodes_[frame.acknowledged]->id() : kNodeNone);
         if (capture_ != nullptr) {
             capture_->add(frame.start_us, frame.channel, {frame.psdu, frame.psdu_len});
         }
@@ -72,19 +74,25 @@ tsr_status Simulation::write_port(void *self, const std::uint8_t *bytes, std::si
 {
     auto &simulation = *static_cast<Simulation *>(self);
     auto answer = simulation.sink_.exchange(bytes, len);
-    simulation.queue_.at(
-        simulation.queue_.now_us() + kSinkAnswerUs,
-        [&gateway = *simulation.gateway_, life = simulation.gateway_->lives(), answer = std::move(answer)] {
-            if (gateway.lives() == life) { /* what a port still held is lost with the power */
-                gateway.receive_from_port(answer.data(), answer.size());
-            }
-        });
+    const std::uint64_t answered_us = simulation.queue_.now_us() + kSinkAnswerUs;
+    simulation.traffic_.hear_sink(answered_us, answer);
+    simulation.queue_.at(answered_us, [&gateway = *simulation.gateway_, life = simulation.gateway_->lives(),
+                                       answer = std::move(answer)] {
+        if (gateway.lives() == life) { /* what a port still held is lost with the power */
+            gateway.receive_from_port(answer.data(), answer.size());
+        }
+    });
     return TSR_OK;
 }
 
 void Simulation::note(const PhaseChange &change)
 {
-    if (change.phase > TSR_PHASE_WATCHING || timeline_.size() < kWatchingNotedMax) {
+    if (change.phase == TSR_PHASE_WATCHING) {
+        const std::size_t second = change.time_us / 1'000'000;
+        looks_per_s_.resize(std::max(looks_per_s_.size(), second + 1));
+        ++looks_per_s_[second];
+    }
+    if (std::max(change.phase, change.before) > TSR_PHASE_WATCHING || timeline_.size() < kWatchingNotedMax) {
         timeline_.push_back(change);
     }
 }
@@ -123,16 +131,17 @@ void Simulation::run(const Progress &progress)
     faults_->schedule(site_.faults);
     /* Every watching node sees the last frame at least once, and however short a recording is, there is a first map,
      * also of a node that a fault has started anew. */
-    const std::uint64_t played_us =
+    played_us_ =
         std::max(pictures_.end_us() + 2 * longest_period_us,
                  std::max(latest_start_us, FaultTimeline::last_us(site_.faults)) + kFirstMapFrames * longest_period_us);
-    const std::uint64_t latest_us = played_us + kPatienceUs;
+    const std::uint64_t latest_us = played_us_ + kPatienceUs;
     while (!queue_.empty() && queue_.next_us() <= latest_us) {
-        if (queue_.next_us() > played_us && quiet()) {
+        if (queue_.next_us() > played_us_ && quiet()) {
             break;
         }
         queue_.run_next();
-        if (progress && !progress(queue_.now_us(), played_us)) {
+        if (progress && !progress(queue_.now_us(), played_us_)) {
+            stopped_ = true;
             break;
         }
     }

@@ -3,10 +3,11 @@
  *
  * SPDX-License-Identifier: Apache-2.0
  */
-#include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
-#include "tsr/emulator/battery.h"
+#include "tsr/emulator/record_json.h"
 #include "tsr/emulator/report.h"
 
 namespace tsr
@@ -18,216 +19,125 @@ namespace
 using Json = nlohmann::ordered_json;
 
 constexpr int kSummaryFormat = 2;
+constexpr std::array kCounts = {"frames_watched", "frames_woken", "captures_failed", "maps_made",    "maps_withheld",
+                                "maps_measured",  "maps_sent",    "maps_lost",       "maps_received"};
 
-/* Shorter numbers, and the same text for the same run. */
-double rounded(double value, int digits)
+Json quantiles_json(const Quantiles &quantiles, int digits)
 {
-    const double scale = std::pow(10.0, digits);
-    return std::round(value * scale) / scale;
-}
-
-Json energy_json(const EnergyMj &energy)
-{
-    const auto [radio, cpu, camera, storage, board] = energy;
-    return {{"radio",
-             {{"transmit", rounded(radio.transmit, 3)},
-              {"assess", rounded(radio.assess, 3)},
-              {"acknowledge", rounded(radio.acknowledge, 3)},
-              {"receive", rounded(radio.receive, 3)},
-              {"sleep", rounded(radio.sleep, 3)}}},
-            {"cpu", {{"run", rounded(cpu.run, 3)}, {"sleep", rounded(cpu.sleep, 3)}}},
-            {"camera",
-             {{"start", rounded(camera.start, 3)},
-              {"expose", rounded(camera.expose, 3)},
-              {"read", rounded(camera.read, 3)},
-              {"standby", rounded(camera.standby, 3)}}},
-            {"storage",
-             {{"write", rounded(storage.write, 3)},
-              {"read", rounded(storage.read, 3)},
-              {"standby", rounded(storage.standby, 3)}}},
-            {"board", {{"leakage", rounded(board, 3)}}},
-            {"total", rounded(energy.total(), 3)}};
-}
-
-/* Life is null where nothing is drawn and nothing lost. */
-Json battery_json(const SiteBattery &battery, const EnergyMj &energy, std::uint64_t duration_us)
-{
-    const double mean_uw = duration_us > 0 ? energy.total() / static_cast<double>(duration_us) * 1e9 : 0;
-    const BatteryLife life = battery_life(battery, mean_uw);
-    return {{"mean_power_uw", rounded(mean_uw, 3)},
-            {"drawn_uw", rounded(life.drawn_uw, 3)},
-            {"self_discharge_uw", rounded(life.self_discharge_uw, 3)},
-            {"life_days", std::isfinite(life.days) ? Json(rounded(life.days, 2)) : Json()}};
-}
-
-Json error_json(const MapError &error)
-{
-    return {{"truth_pixels", error.truth_pixels},
-            {"matched_pixels", error.matched_pixels},
-            {"correct", rounded(error.correct, 4)},
-            {"bad_half", rounded(error.bad_half, 4)},
-            {"bad_1", rounded(error.bad_1, 4)},
-            {"median_px", rounded(error.median_px, 4)},
-            {"mean_px", rounded(error.mean_px, 4)},
-            {"median_mm", rounded(error.median_mm, 2)},
-            {"median_depth_percent", rounded(error.median_depth_percent, 3)}};
-}
-
-Json work_json(const EmulatedNode &node)
-{
-    Json work = Json::object();
-    for (int kind = TSR_WORK_NONE + 1; kind < TSR_WORK_COUNT; ++kind) {
-        const auto units = node.work_units().at(static_cast<std::size_t>(kind));
-        if (units > 0) {
-            const auto work_kind = static_cast<tsr_work_kind>(kind);
-            work[tsr_work_name(work_kind)] = {
-                {"units", units},
-                {"instructions", std::llround(static_cast<double>(units) * instructions_per_unit(work_kind))}};
-        }
+    if (quantiles.count == 0) {
+        return {{"count", 0}};
     }
-    return work;
+    return {{"count", quantiles.count},
+            {"median", rounded(quantiles.median, digits)},
+            {"p95", rounded(quantiles.p95, digits)},
+            {"max", rounded(quantiles.max, digits)}};
 }
 
-Json drops_json(const EmulatedNode &node)
+Json days_json(double days)
 {
-    const tsr_node_counters &counters = node.counters();
-    const tsr_mac_counters &mac = node.mac_counters();
-    return {{"route", counters.dropped_route},          {"format", counters.dropped_format},
-            {"foreign", counters.dropped_foreign},      {"auth", counters.dropped_auth + mac.dropped_auth},
-            {"replay", counters.dropped_replay},        {"frame_format", mac.dropped_format},
-            {"frame_repeated", mac.dropped_replay},     {"frame_queue", mac.dropped_queue},
-            {"frame_neighbour", mac.dropped_neighbour}, {"frame_unsealed", mac.unsealed},
-            {"queue", counters.dropped_queue}};
+    return std::isfinite(days) ? Json(rounded(days, 2)) : Json();
 }
 
-Json node_json(const EmulatedNode &node, const AirTally &air, std::size_t maps_received, Json battery)
+Json traffic_json(const RunDigest &digest)
 {
-    const tsr_node_counters &counters = node.counters();
-    const tsr_mac_counters &mac = node.mac_counters();
-    const tsr_sender_counters &sender = node.sender_counters();
-    return {{"id", node.id()},
-            {"name", node.site_node().name},
-            {"role", role_name(node.site_node().role)},
-            {"parent", node.site_node().parent},
-            {"lives", node.lives()},
-            {"frames_watched", counters.frames_watched},
-            {"frames_woken", counters.frames_woken},
-            {"captures_failed", counters.captures_failed},
-            {"wakes_sent", counters.wakes_sent},
-            {"views_sent", counters.views_sent},
-            {"views_lost", counters.views_lost},
-            {"view_bytes", counters.view_bytes},
-            {"maps_made", counters.maps_made},
-            {"maps_withheld", counters.maps_withheld},
-            {"maps_sent", counters.maps_sent},
-            {"maps_lost", counters.maps_lost},
-            {"maps_received", maps_received},
-            {"map_bytes", counters.map_bytes},
-            {"references_omitted", counters.references_omitted},
-            {"fragments", sender.fragments},
-            {"fragments_again", sender.fragments_again},
-            {"forwarded", counters.forwarded},
-            {"uplinks", counters.uplinks},
-            {"mac",
-             {{"sent", mac.sent},
-              {"retries", mac.retries},
-              {"unacknowledged", mac.unacknowledged},
-              {"channel_busy", mac.channel_busy},
-              {"received", mac.received}}},
-            {"air", {{"frames", air.frames}, {"bytes", air.bytes}, {"lost", air.lost}}},
-            {"dropped", drops_json(node)},
-            {"energy_mj", energy_json(node.energy())},
-            {"battery", std::move(battery)},
-            {"work", work_json(node)},
-            {"memory_bytes", node.arena_len()}};
-}
-
-std::size_t count_received(const std::vector<ReceivedMap> &maps, std::uint16_t node)
-{
-    return static_cast<std::size_t>(
-        std::count_if(maps.begin(), maps.end(), [node](const ReceivedMap &map) { return map.node == node; }));
-}
-
-Json pair_json(const SitePair &pair, const Json &node, const std::vector<ReceivedMap> &maps)
-{
-    Json json{{"name", pair.name},   {"lead", pair.lead},     {"wing", pair.wing},
-              {"width", pair.width}, {"height", pair.height}, {"disparities", pair.disparities}};
-    for (const char *key :
-         {"frames_watched", "frames_woken", "maps_made", "maps_withheld", "maps_sent", "maps_lost", "maps_received"}) {
-        json[key] = node.at(key);
+    Json traffic = Json::array();
+    for (const auto &[key, tally] : digest.traffic) {
+        const auto &[kind, hops] = key;
+        traffic.push_back({{"kind", kind < kMessageNames.size() ? kMessageNames.at(kind).name : "acknowledgement"},
+                           {"hops", hops},
+                           {"frames", tally.frames},
+                           {"bytes", tally.bytes}});
     }
-    json["maps"] = Json::array();
-    for (const ReceivedMap &map : maps) {
-        if (map.node != pair.lead) {
-            continue;
+    return traffic;
+}
+
+/* nodes: as JSON, in the order of the records. */
+Json totals_json(const RunRecord &run, const Json &nodes)
+{
+    Json totals = Json::object();
+    for (const char *key : kCounts) {
+        std::uint64_t sum = 0;
+        for (const Json &node : nodes) {
+            sum += node.at(key).get<std::uint64_t>();
         }
-        Json entry{{"counter", map.counter},
-                   {"capture_time_s", rounded(static_cast<double>(map.capture_time_us) / 1e6, 6)},
-                   {"kept", map.kept},
-                   {"map_bytes", map.map_bytes},
-                   {"reference_bytes", map.reference_bytes},
-                   {"file", map.file + ".pfm"}};
-        if (map.error) {
-            entry["error"] = error_json(*map.error);
+        totals[key] = sum;
+    }
+    AirTally air;
+    double energy_mj = 0;
+    for (const NodeRecord &node : run.nodes) {
+        air.frames += node.air.frames;
+        air.bytes += node.air.bytes;
+        energy_mj += node.energy.total();
+    }
+    totals["air_frames"] = air.frames;
+    totals["air_bytes"] = air.bytes;
+    totals["energy_mj"] = rounded(energy_mj, 3);
+    totals["latency_s"] = quantiles_json(run.digest.latency_s, 6);
+    totals["median_error_px"] = quantiles_json(run.digest.error_px, 4);
+    totals["median_error_mm"] = quantiles_json(run.digest.error_mm, 2);
+    totals["correct_median"] = rounded(run.digest.correct, 4);
+    totals["shortest_life_node"] = run.digest.shortest_life;
+    totals["shortest_life_days"] = days_json(run.digest.shortest_life_days);
+    totals["median_life_days"] = days_json(run.digest.median_life_days);
+    totals["traffic"] = traffic_json(run.digest);
+    return totals;
+}
+
+Json pairs_json(const RunRecord &run, const Json &nodes)
+{
+    std::map<std::uint16_t, const Json *> leads;
+    for (const Json &node : nodes) {
+        leads[node.at("id").get<std::uint16_t>()] = &node;
+    }
+    std::map<std::uint16_t, Json> maps;
+    for (const ReceivedMap &map : run.maps) {
+        Json entry = json_of(map);
+        entry.erase("node");
+        maps.try_emplace(map.node, Json::array()).first->second.push_back(std::move(entry));
+    }
+    Json pairs = Json::array();
+    for (const SitePair &pair : run.site->pairs) {
+        Json json{{"name", pair.name},   {"lead", pair.lead},     {"wing", pair.wing},
+                  {"width", pair.width}, {"height", pair.height}, {"disparities", pair.disparities}};
+        for (const char *key : kCounts) {
+            json[key] = leads.at(pair.lead)->at(key);
         }
-        json["maps"].push_back(std::move(entry));
+        json["maps"] = std::move(maps.try_emplace(pair.lead, Json::array()).first->second);
+        pairs.push_back(std::move(json));
+    }
+    return pairs;
+}
+
+template <typename Records> Json array_of(const Records &records)
+{
+    Json json = Json::array();
+    for (const auto &record : records) {
+        json.push_back(json_of(record));
     }
     return json;
 }
 
-Json totals_json(const Json &nodes)
-{
-    Json totals = Json::object();
-    for (const char *key :
-         {"frames_watched", "frames_woken", "maps_made", "maps_withheld", "maps_sent", "maps_lost", "maps_received"}) {
-        totals[key] = 0;
-    }
-    std::uint64_t frames = 0;
-    std::uint64_t bytes = 0;
-    double energy = 0;
-    for (const Json &node : nodes) {
-        for (auto &[key, value] : totals.items()) {
-            value = value.get<std::uint64_t>() + node.at(key).get<std::uint64_t>();
-        }
-        frames += node.at("air").at("frames").get<std::uint64_t>();
-        bytes += node.at("air").at("bytes").get<std::uint64_t>();
-        energy += node.at("energy_mj").at("total").get<double>();
-    }
-    totals["air_frames"] = frames;
-    totals["air_bytes"] = bytes;
-    totals["energy_mj"] = rounded(energy, 3);
-    return totals;
-}
-
 } // namespace
 
-Json make_summary(const Site &site, const Simulation &simulation, const std::vector<ReceivedMap> &maps,
-                  unsigned sink_restarts, double wall_time_s)
+Json make_summary(const RunRecord &run)
 {
-    Json nodes = Json::array();
-    Json pairs = Json::array();
-    for (std::size_t i = 0; i < simulation.nodes().size(); ++i) {
-        const EmulatedNode &node = *simulation.nodes()[i];
-        nodes.push_back(node_json(node, simulation.air_tally(i), count_received(maps, node.id()),
-                                  battery_json(site.battery, node.energy(), simulation.duration_us())));
-    }
-    for (const SitePair &pair : site.pairs) {
-        const auto lead = std::find_if(nodes.begin(), nodes.end(),
-                                       [&](const Json &node) { return node.at("id").get<int>() == pair.lead; });
-        pairs.push_back(pair_json(pair, *lead, maps));
-    }
+    const Site &site = *run.site;
+    Json nodes = array_of(run.nodes);
     return {{"format", kSummaryFormat},
             {"site", site.name},
             {"seed", site.seed},
-            {"virtual_time_s", rounded(static_cast<double>(simulation.duration_us()) / 1e6, 6)},
-            {"settled", simulation.quiet()},
-            {"sink_restarts", sink_restarts},
+            {"virtual_time_s", rounded(static_cast<double>(run.simulation->duration_us()) / 1e6, 6)},
+            {"stopped", run.simulation->stopped()},
+            {"settled", run.simulation->quiet()},
+            {"sink_restarts", run.sink_restarts},
             {"usable_battery_j", rounded(battery_life(site.battery, 0).usable_mj / 1000, 1)},
-            {"faults", faults_json(simulation)},
-            {"totals", totals_json(nodes)},
-            {"pairs", std::move(pairs)},
+            {"faults", array_of(run.simulation->faults().notes())},
+            {"totals", totals_json(run, nodes)},
+            {"events", array_of(run.zone_events)},
+            {"pairs", pairs_json(run, nodes)},
+            {"links", array_of(run.links)},
             {"nodes", std::move(nodes)},
-            {"wall_time_s", rounded(wall_time_s, 3)}};
+            {"wall_time_s", rounded(run.wall_time_s, 3)}};
 }
 
 } // namespace tsr

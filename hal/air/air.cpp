@@ -90,6 +90,11 @@ int Air::rssi_dbm(std::size_t from, std::size_t to) const
     return kSilentDbm;
 }
 
+int Air::noise_dbm() const
+{
+    return air::to_dbm(receiver_model_.noise_q4);
+}
+
 void Air::account(Radio &radio) const
 {
     const std::uint64_t now_us = clock_.now_us();
@@ -372,6 +377,7 @@ void Air::end_ack(const Transmission &transmission, AirFrame frame, AirFate fate
                          return receipt.radio == &to;
                      });
     frame.lost_at = got ? 0 : 1;
+    frame.acknowledged = to.index;
     if (tap_) {
         tap_(frame);
     }

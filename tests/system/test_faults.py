@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 import json
 import pathlib
-import re
 import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from run_page import page_data
 from run_site import check, emulate
 
 # Nodes 1 to 3 are binocular, 4 is the gateway; the camera of 3 fails and node 2 dies.
@@ -101,9 +101,7 @@ with tempfile.TemporaryDirectory() as folder:
         # Ground truth of the moment that the drifting clock means.
         check(all(entry["error"]["correct"] > 0.3 for entry in pair["maps"]), f"{pair['name']}: other truth than picture")
 
-    page = (folder / "first/index.html").read_text()
-    data = json.loads(re.search(r"const DATA = (.*);\n", page).group(1))
-    check(data["summary"]["faults"] == summary["faults"], "the page tells of other faults")
+    check(page_data(folder / "first")["summary"]["faults"] == summary["faults"], "the page tells of other faults")
     written = (folder / "first/site.toml").read_text()
     check(written.count("[[fault]]") == 8, "site.toml lost faults")
     print(f"{len(kinds)} kinds of fault, {summary['totals']['maps_received']} maps; without faults {calm['totals']['maps_received']}")

@@ -37,6 +37,7 @@ struct PhaseChange {
     std::uint64_t time_us = 0;
     std::uint16_t node = 0;
     tsr_node_phase phase = TSR_PHASE_IDLE;
+    tsr_node_phase before = TSR_PHASE_IDLE;
 };
 
 class EmulatedNode

@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "tsr/hal/frame_source.h"
 #include "tsr/host/pfm.h"
@@ -23,6 +25,11 @@ struct PairTruth {
     std::filesystem::path name; /* for errors */
 };
 
+struct SceneEvent {
+    std::uint64_t time_us = 0;
+    std::string what;
+};
+
 class Pictures
 {
   public:
@@ -33,6 +40,8 @@ class Pictures
     virtual std::uint64_t end_us() const = 0;
     /* What a perfect map of a capture at time_us would be. */
     virtual std::optional<PairTruth> truth(const SitePair &pair, std::uint64_t time_us) = 0;
+    /* What is known to happen, in order of time. */
+    virtual std::vector<SceneEvent> events() const { return {}; }
 };
 
 } // namespace tsr

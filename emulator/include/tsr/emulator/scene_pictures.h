@@ -25,12 +25,14 @@ class ScenePictures : public Pictures
     std::unique_ptr<FrameSource> source(const SiteNode &node, bool right) override;
     std::uint64_t end_us() const override;
     std::optional<PairTruth> truth(const SitePair &pair, std::uint64_t time_us) override;
+    std::vector<SceneEvent> events() const override;
 
   private:
     /* A wing's only camera is the right one of its pair. */
     VirtualCamera *camera(std::uint16_t node, bool right);
 
     const Scenario &scenario_;
+    const Staging &staging_;
     scene::RayCaster caster_; /* of this thread, for truths */
     std::map<std::pair<std::uint16_t, bool>, std::unique_ptr<VirtualCamera>> cameras_;
     RenderPool pool_; /* ends before the cameras do */

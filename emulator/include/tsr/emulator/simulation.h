@@ -17,6 +17,7 @@
 #include "tsr/emulator/event_queue.h"
 #include "tsr/emulator/fault_timeline.h"
 #include "tsr/emulator/sink_link.h"
+#include "tsr/emulator/traffic.h"
 #include "tsr/host/pcapng.h"
 
 namespace tsr
@@ -42,7 +43,7 @@ class Simulation
 
     /* Called after each event; false ends the run. */
     using Progress = std::function<bool(std::uint64_t now_us, std::uint64_t end_us)>;
-    /* Watching is most of a long run's timeline; past this many changes only the rest is noted. */
+    /* Watching is most of a long run's timeline; past this many changes only what leads to a map or a view is noted. */
     static constexpr std::size_t kWatchingNotedMax = 20'000;
 
     /* All are kept. Throws InputError for recordings or configurations that cannot be run. */
@@ -56,13 +57,21 @@ class Simulation
     void run(const Progress &progress);
 
     std::uint64_t duration_us() const { return queue_.now_us(); }
+    /* How long there is something to see. */
+    std::uint64_t played_us() const { return played_us_; }
+    /* Progress has ended the run before that. */
+    bool stopped() const { return stopped_; }
     const std::vector<std::unique_ptr<EmulatedNode>> &nodes() const { return nodes_; }
     const std::vector<PhaseChange> &timeline() const { return timeline_; }
+    /* Frames watched by all nodes in each second. */
+    const std::vector<std::uint32_t> &looks_per_s() const { return looks_per_s_; }
     FaultTimeline &faults() { return *faults_; }
     const FaultTimeline &faults() const { return *faults_; }
     /* When a node's clock showed a time. */
     std::uint64_t virtual_us(std::uint16_t node, std::uint64_t local_us) const;
     const AirTally &air_tally(std::size_t node_index) const { return air_tallies_.at(node_index); }
+    const Traffic &traffic() const { return traffic_; }
+    const Air &air() const { return *air_; }
     /* Whether everything was delivered before patience ended. */
     bool quiet() const;
 
@@ -82,7 +91,11 @@ class Simulation
     void note(const PhaseChange &change);
 
     std::vector<PhaseChange> timeline_;
+    std::vector<std::uint32_t> looks_per_s_;
     std::vector<AirTally> air_tallies_;
+    Traffic traffic_;
+    std::uint64_t played_us_ = 0;
+    bool stopped_ = false;
     mutable std::size_t last_busy_ = 0; /* a node's index, where quiet() looks first */
     PcapngCapture *capture_ = nullptr;  /* may stay null */
 };

@@ -47,12 +47,15 @@ struct AirTimes {                    /* what a radio did, us; all together the t
 
 /* One PSDU on air, acknowledgements included. */
 struct AirFrame {
+    static constexpr std::size_t kNobody = SIZE_MAX;
+
     std::uint64_t start_us = 0;
     std::size_t sender = 0; /* radio index */
     std::uint8_t channel = 0;
     const std::uint8_t *psdu = nullptr;
     std::size_t psdu_len = 0;
     std::uint64_t lost_at = 0; /* 1: nobody addressed got it; broadcasts: the sender's neighbours that did not */
+    std::size_t acknowledged = kNobody; /* radio index: whose frame this acknowledges */
 };
 
 /* What becomes of one transmission, when a test decides it. */
@@ -98,6 +101,8 @@ class Air
     /* Of a link without its fading, rounded; kSilentDbm between radios that are no neighbours. */
     static constexpr int kSilentDbm = -128;
     int rssi_dbm(std::size_t from, std::size_t to) const;
+    /* Of every receiver, rounded; the sensitivity sets it. */
+    int noise_dbm() const;
     /* What has been done: pairs of radios compared, receivers that a transmission was brought to. */
     std::uint64_t pairs_compared() const { return neighbours_.compared(); }
     std::uint64_t arrivals() const { return arrivals_; }

@@ -1,0 +1,114 @@
+/* Bytes for the page. SPDX-License-Identifier: Apache-2.0 */
+#include "page_data.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <string_view>
+#include <vector>
+
+#include "tsr/host/input_error.h"
+#include "tsr/host/read_file.h"
+
+namespace tsr
+{
+
+namespace
+{
+
+constexpr std::size_t kPlyVertexLen = 3 * sizeof(float) + 3; /* tsr/host/ply.h */
+constexpr std::size_t kPointsMax = 80'000;
+constexpr double kGridMax = 65535;
+
+struct Point {
+    std::array<float, 3> position_m;
+    std::array<std::uint8_t, 3> colour;
+};
+
+std::vector<Point> thinned_points(std::span<const std::uint8_t> vertices)
+{
+    const std::size_t count = vertices.size() / kPlyVertexLen;
+    const std::size_t shown = std::min(count, kPointsMax);
+    std::vector<Point> points(shown);
+    for (std::size_t i = 0; i < shown; ++i) {
+        const auto vertex = vertices.subspan(i * count / shown * kPlyVertexLen, kPlyVertexLen);
+        std::memcpy(points[i].position_m.data(), vertex.data(), sizeof points[i].position_m);
+        std::copy(vertex.end() - 3, vertex.end(), points[i].colour.begin());
+    }
+    return points;
+}
+
+/* Outliers are many metres away: the grid covers what all but a hundredth of the points need. */
+std::array<double, 2> range_of(const std::vector<Point> &points, std::size_t axis)
+{
+    if (points.empty()) {
+        return {0, 0};
+    }
+    std::vector<float> values;
+    values.reserve(points.size());
+    for (const Point &point : points) {
+        values.push_back(point.position_m.at(axis));
+    }
+    std::sort(values.begin(), values.end());
+    const std::size_t off = values.size() / 200;
+    const double low = values[off];
+    const double high = values[values.size() - 1 - off];
+    return {low - (high - low) / 2, high + (high - low) / 2};
+}
+
+} // namespace
+
+std::string base64(std::span<const std::uint8_t> bytes)
+{
+    static constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+        unsigned group = 0;
+        for (std::size_t j = 0; j < 3; ++j) {
+            group = group << 8 | (j < count ? bytes[i + j] : 0u);
+        }
+        for (std::size_t j = 0; j < 4; ++j) {
+            text.push_back(j <= count ? kAlphabet[group >> (18 - 6 * j) & 63u] : '=');
+        }
+    }
+    return text;
+}
+
+nlohmann::ordered_json cloud_json(const std::filesystem::path &file)
+{
+    const auto bytes = read_file(file);
+    const std::string_view text(reinterpret_cast<const char *>(bytes.data()), bytes.size());
+    constexpr std::string_view kEnd = "end_header\n";
+    const std::size_t header_end = text.find(kEnd);
+    if (header_end == std::string_view::npos) {
+        throw InputError(file.string(), "header", "has no end");
+    }
+    const std::span<const std::uint8_t> vertices(bytes.data() + header_end + kEnd.size(),
+                                                 bytes.size() - header_end - kEnd.size());
+    const std::vector<Point> points = thinned_points(vertices);
+    std::array<double, 3> low{};
+    std::array<double, 3> step{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto [first, last] = range_of(points, axis);
+        low.at(axis) = first;
+        step.at(axis) = std::max((last - first) / kGridMax, 1e-9);
+    }
+    std::vector<std::uint8_t> positions;
+    std::vector<std::uint8_t> colours;
+    for (const Point &point : points) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double place = (static_cast<double>(point.position_m.at(axis)) - low.at(axis)) / step.at(axis);
+            const auto value = static_cast<std::uint16_t>(std::lround(std::clamp(place, 0.0, kGridMax)));
+            positions.push_back(static_cast<std::uint8_t>(value));
+            positions.push_back(static_cast<std::uint8_t>(value >> 8));
+        }
+        colours.insert(colours.end(), point.colour.begin(), point.colour.end());
+    }
+    return {{"of", vertices.size() / kPlyVertexLen}, {"count", points.size()},    {"low", low}, {"step", step},
+            {"positions", base64(positions)},        {"colours", base64(colours)}};
+}
+
+} // namespace tsr
