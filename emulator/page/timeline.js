@@ -3,7 +3,7 @@ const FATES = [["committed", "committed", "map delivered"], ["withheld", "withhe
 const FATE_COLOUR = {...Object.fromEntries(FATES.map(([fate, colour]) => [fate, colour])), "view": "view", "under way": "soft"};
 const FATE_WORDS = {...Object.fromEntries(FATES.map(([fate, , words]) => [fate, words])), "view": "view sent to its lead", "under way": "under way at the end"};
 /* Phases as they mean something to a reader. */
-const PHASE_COLOUR = {waking: "listen", capturing: "camera", receiving: "listen", unpacking: "compute", reference: "compute", matching: "compute", median: "compute", measuring: "compute", comparing: "compute",
+const PHASE_COLOUR = {waking: "listen", capturing: "storage", receiving: "listen", unpacking: "compute", reference: "compute", matching: "compute", median: "compute", measuring: "compute", comparing: "compute",
   filtering: "compute", encoding: "compute", sealing: "compute", sending: "send"};
 const END = Math.max(summary.virtual_time_s, 1e-3);
 
@@ -101,14 +101,17 @@ function showTimeline() {
     parts.push(text((left + right) / 2, height - 4, "virtual time, s", {anchor: "middle", kind: "soft"}));
     return {height, body: grid + parts.join("")};
   }
-  const kinds = [...new Set(DATA.messages.rows.map(([, , kind]) => kind))], phased = phasesOf.size > 0;
+  const kinds = [...new Set(DATA.messages.rows.map(([, , kind]) => kind))], phased = phasesOf.size > 0, seen = new Set(DATA.episodes.rows.map((row) => row[3]));
+  const fates = Object.keys(FATE_WORDS).filter((fate) => seen.has(fate) && !(phased && (fate === "view" || fate === "under way")));
+  const entries = [...(phased ? [["storage", "capturing"], ["listen", "waking, receiving a view"], ["compute", "computing"], ["send", "sending"]] : []),
+    ...fates.map((fate) => [FATE_COLOUR[fate], FATE_WORDS[fate]]), ...(kinds.length > 0 ? [["ink", `diamonds: ${kinds.join(", ")}`]] : []),
+    ...(summary.faults.length > 0 ? [["lost", "dashed: faults"]] : [])];
   const {bin_s: width, looks, woken: wakes} = DATA.timeline;
   chart("timeline", {
     label: "What the cameras did over time: frames watched, pairs woken, what became of it, and a lane for each camera",
     draw,
-    below: legend([...(phased ? [["camera", "capturing"], ["listen", "waking, receiving a view"], ["compute", "computing"], ["send", "sending"]] : []), ...FATES.map(([, colour, words]) => [colour, words]),
-      ...(kinds.length > 0 ? [["ink", `diamonds: ${kinds.join(", ")}`]] : []), ...(summary.faults.length > 0 ? [["lost", "dashed: faults"]] : [])]) +
-      `<p class="soft note">Columns are numbers in ${width} s. ${thinnedNote(DATA.episodes, "wakes")}</p>`,
+    below: legend(entries) +
+      `<p class="soft note">A column is ${width} s. ${thinnedNote(DATA.episodes, "wakes")}</p>`,
     table: () => [["from, s", "to, s", "frames watched", "woken", ...FATES.map(([fate]) => fate)], looks.map((_, i) => [i * width, (i + 1) * width, looks[i], wakes[i], ...FATES.map(([fate]) => DATA.timeline[fate][i])])],
   });
   if (hasEvents) addTable($("timeline"), "what the scene tells, as a table", () => [["at, s", "what"], DATA.events]);

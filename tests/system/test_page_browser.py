@@ -1,6 +1,7 @@
 """A browser draws the page without an error: every chart and table, light and dark, on a desk and on a phone, nothing wider than the screen."""
 # SPDX-License-Identifier: Apache-2.0
 import html
+import json
 import pathlib
 import re
 import shutil
@@ -13,6 +14,7 @@ from run_page import PAGE_SCENARIO
 from run_site import check, emulate, skip
 
 CHARTS = ("plan", "timeline", "energy-all", "energy-rest", "bytes", "map-bytes", "latency", "latency-hops", "error")
+DATA = re.compile(r'<script id="data" type="application/json">(.*?)</script>', re.DOTALL)
 # The page in a frame, since a browser's window is not narrower than 500 px: opens every table, then shows what the frame has.
 FRAME = """<!doctype html><body style="margin:0"><iframe width="%d" height="2000" style="border:0" srcdoc="%s"></iframe><script>
 setTimeout(() => {
@@ -36,6 +38,39 @@ def browse(browser, page, *options):
     return result.stdout, [line for line in result.stderr.splitlines() if "CONSOLE" in line]
 
 
+def crowded(page):
+    """The same page for a hundred nodes, with messages of a kind that is no map."""
+    data = json.loads(DATA.search(page)[1])
+    columns = {name: i for i, name in enumerate(data["nodes"]["columns"])}
+    cameras = [row for row in data["nodes"]["rows"] if row[columns["role"]] == "binocular"]
+    rows, episodes = data["nodes"]["rows"], data["episodes"]["rows"]
+    for copy in range(1, 33):
+        for row in cameras:
+            more = list(row)
+            more[columns["id"]] += 100 * copy
+            more[columns["place_x_m"]] += 3 * copy
+            rows.append(more)
+        episodes += [[node + 100 * copy, *rest] for node, *rest in data["episodes"]["rows"][:20]]
+    data["nodes"]["of"] = len(rows)
+    data["messages"] = {"of": 1, "rows": [[12.5, 101, "depth event"]]}
+    return DATA.sub(lambda found: found[0].replace(found[1], json.dumps(data).replace("<", "\\u003c")), page), len(rows)
+
+
+def check_drawn(dom, console, width, charts):
+    check(not console, f"{width} px: {console[:3]}")
+    dom = re.sub(r"<script.*?</script>|data:image[^\"]*", "", dom, flags=re.DOTALL)
+    for chart in charts:
+        drawn = re.search(rf'<div id="{chart}"><div><svg[^>]*aria-label="[^"]+"', dom)
+        check(drawn is not None, f"{width} px: no chart {chart}")
+    check("NaN" not in dom and "undefined" not in dom, f"{width} px: not a number")
+    check(dom.count("<table>") == dom.count("<details") >= len(CHARTS), f"{width} px: a chart has no table")
+    tiles = dom.count('class="tile"')
+    check(tiles == 8, f"{width} px: {tiles} tiles")
+    wide = re.search(r'id="probe">(\d+) of (\d+)<', dom)
+    check(wide is not None and int(wide[1]) <= int(wide[2]) == width, f"{width} px: the page is {wide and wide[0]} px wide")
+    return dom
+
+
 browser = shutil.which("chromium")
 if browser is None:
     skip("test_page_browser", "chromium is not installed")
@@ -53,16 +88,11 @@ with tempfile.TemporaryDirectory() as folder:
     for width, options in ((1400, ()), (390, ()), (390, ("--blink-settings=preferredColorScheme=0",))):
         framed.write_text(FRAME % (width, html.escape(page)))
         dom, console = browse(browser, framed, *options)
-        check(not console, f"{width} px: {console}")
-        for chart in CHARTS:
-            drawn = re.search(rf'<div id="{chart}"><div><svg[^>]*aria-label="[^"]+"', dom)
-            check(drawn is not None, f"{width} px: no chart {chart}")
-        dom = re.sub(r"<script.*?</script>|data:image[^\"]*", "", dom, flags=re.DOTALL)
-        check("NaN" not in dom and "undefined" not in dom, f"{width} px: not a number")
-        check(dom.count("<table>") == dom.count("<details") >= len(CHARTS), f"{width} px: a chart has no table")
-        tiles = dom.count('class="tile"')
-        check(tiles == 8, f"{width} px: {tiles} tiles")
+        dom = check_drawn(dom, console, width, CHARTS)
         check(f'{summary["totals"]["maps_received"]} <small>' in dom, f"{width} px: delivered maps are not there")
-        wide = re.search(r'id="probe">(\d+) of (\d+)<', dom)
-        check(wide is not None and int(wide[1]) <= int(wide[2]) == width, f"{width} px: the page is {wide and wide[0]} px wide")
+    page, count = crowded(page)
+    for width in (1400, 390):
+        framed.write_text(FRAME % (width, html.escape(page)))
+        dom = check_drawn(*browse(browser, framed), width, (*CHARTS, "life"))
+        check(f"{count} nodes" in dom and "diamonds: depth event" in dom, f"{width} px: {count} nodes and their messages are not there")
     print(f"{len(CHARTS)} charts at 1400 and 390 px")

@@ -10,7 +10,7 @@ from run_site import check, emulate, make_scene
 
 
 def results(out):
-    files = {name: (out / name).read_bytes() for name in ("cloud.ply", "capture.pcapng", "sink.json")}
+    files = {name: (out / name).read_bytes() for name in ("cloud.ply", "capture.pcapng", "sink.json", "nodes.csv", "links.csv", "maps.csv")}
     files.update({f"maps/{file.name}": file.read_bytes() for file in (out / "maps").iterdir()})
     summary = json.loads((out / "summary.json").read_text())
     del summary["wall_time_s"]
