@@ -12,6 +12,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(SOURCE / "tests/target"))
 import board  # noqa: E402
 import progress  # noqa: E402
+import zone_events  # noqa: E402
 
 SCENES = ("house", "car", "bedroom", "street", "tank")
 SEEDS = (1, 2, 3)
@@ -28,7 +29,8 @@ def target(name, value, unit, goal=None, met=None, how=""):
 def build():
     release = SOURCE / "build/release"
     board.run(["cmake", "--preset", "release", "-DTSR_TESTS=ON"], cwd=SOURCE)
-    board.run(["cmake", "--build", release, "--target", "scene_changes", "tarsier-emulator", "tarsier-sink"], timeout_s=1800)
+    board.run(["cmake", "--build", release, "--target", "scene_changes", "scene_doorways", "scene_zones",
+               "tarsier-emulator", "tarsier-sink"], timeout_s=1800)
     return release / "bin"
 
 
@@ -66,12 +68,13 @@ def crowd(programs):
 def bench():
     programs = build()
     rows = [changes(programs, scene, seed) for scene in SCENES for seed in SEEDS]
+    zone_targets, zones = zone_events.bench(programs, SOURCE / "emulator/scenarios", target)
     summary = crowd(programs)
     speed = summary["virtual_time_s"] / summary["wall_time_s"]
-    targets = [*change_targets(rows),
+    targets = [*change_targets(rows), *zone_targets,
                target("100 nodes in a virtual scene", speed, "x real time", CROWD["speed_min"], speed >= CROWD["speed_min"],
                       "one frame a second each, start and report included")]
-    return {"targets": targets, "details": {"changes": rows, "crowd": summary["totals"]}}
+    return {"targets": targets, "details": {"changes": rows, "zones": zones, "crowd": summary["totals"]}}
 
 
 def table(result):
