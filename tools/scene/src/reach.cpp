@@ -1,5 +1,5 @@
 /*
- * Bounds of bodies, shadows and their images.
+ * Bounds of bodies and shadows.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -85,31 +85,6 @@ std::vector<Eigen::Vector3f> with_lamp_shadow(const std::vector<Eigen::Vector3f>
         points.push_back(lamp + reach * (point - lamp));
     }
     return points;
-}
-
-Eigen::AlignedBox2f screen_box(const std::vector<Eigen::Vector3f> &points, const Eigen::Isometry3f &to_camera)
-{
-    constexpr float kNear = 0.01F;
-    std::vector<Eigen::Vector3f> seen;
-    seen.reserve(points.size());
-    for (const Eigen::Vector3f &point : points) {
-        seen.push_back(to_camera * point);
-    }
-    Eigen::AlignedBox2f box;
-    for (const Eigen::Vector3f &a : seen) {
-        if (a.z() >= kNear) {
-            box.extend(Eigen::Vector2f(a.x() / a.z(), a.y() / a.z()));
-            continue;
-        }
-        /* Every edge of the hull is among the segments between two points: where they cross the near plane. */
-        for (const Eigen::Vector3f &b : seen) {
-            if (b.z() > kNear) {
-                const Eigen::Vector3f crossing = a + (b - a) * ((kNear - a.z()) / (b.z() - a.z()));
-                box.extend(Eigen::Vector2f(crossing.x() / kNear, crossing.y() / kNear));
-            }
-        }
-    }
-    return box;
 }
 
 } // namespace tsr::scene

@@ -1,6 +1,5 @@
 /*
- * What a moving body can reach: its hull on the way, its shadows, and where a
- * camera may see them. Everything errs to the larger side.
+ * What a moving body can reach: its hull on the way, and its shadows. Everything errs to the larger side.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -23,10 +22,6 @@ std::vector<Eigen::Vector3f> with_sun_shadow(const std::vector<Eigen::Vector3f> 
                                              const Eigen::AlignedBox3f &bounds);
 std::vector<Eigen::Vector3f> with_lamp_shadow(const std::vector<Eigen::Vector3f> &body, const Eigen::Vector3f &lamp,
                                               const Eigen::AlignedBox3f &bounds);
-
-/* Bounds, in x' = X / Z and y' = Y / Z, of the part of the points' hull that lies before the camera (Z >= 1 cm); empty
- * if none does. */
-Eigen::AlignedBox2f screen_box(const std::vector<Eigen::Vector3f> &points, const Eigen::Isometry3f &to_camera);
 
 } // namespace tsr::scene
 

@@ -9,6 +9,7 @@
 #include <array>
 
 #include "reach.h"
+#include "screen_hull.h"
 #include "shade.h"
 
 namespace tsr::scene
@@ -41,10 +42,12 @@ View::View(const Geometry &geometry, const Camera &camera)
     layers_.sun.resize(pixels);
     layers_.lamp.resize(pixels);
     dirty_.resize(pixels);
+    row_bounds_.resize(static_cast<std::size_t>(camera.height));
     for (int y = 0; y < camera.height; ++y) {
         for (int x = 0; x < camera.width; ++x) {
             const Eigen::Vector2f centre = undistorted(camera, x, y).cast<float>();
             image_points_.push_back(centre);
+            row_bounds_[static_cast<std::size_t>(y)].extend(centre);
             for (const auto &offset : kOffsets) {
                 const double u = x + offset[0], v = y + offset[1];
                 directions_.push_back(direction_of(u, v));
@@ -82,15 +85,17 @@ void View::trace_pixel(const RayCaster &caster, std::size_t pixel)
 
 void View::mark(const std::vector<Eigen::Vector3f> &hull)
 {
-    Eigen::AlignedBox2f box = screen_box(hull, camera_.pose.inverse().cast<float>());
-    if (box.isEmpty()) {
-        return;
-    }
-    constexpr float kRounding = 1e-4F;
-    box.min().array() -= margin_ + kRounding;
-    box.max().array() += margin_ + kRounding;
-    for (std::size_t i = 0; i < image_points_.size(); ++i) {
-        dirty_[i] |= static_cast<std::uint8_t>(box.contains(image_points_[i]));
+    const ScreenHull seen(hull, camera_.pose.inverse().cast<float>(), margin_);
+    const auto width = static_cast<std::size_t>(camera_.width);
+    for (std::size_t row = 0; row < row_bounds_.size(); ++row) {
+        if (!seen.bounds().intersects(row_bounds_[row])) {
+            continue;
+        }
+        for (std::size_t i = row * width; i < (row + 1) * width; ++i) {
+            if (dirty_[i] == 0 && seen.bounds().contains(image_points_[i]) && seen.contains(image_points_[i])) {
+                dirty_[i] = 1;
+            }
+        }
     }
 }
 
@@ -102,7 +107,9 @@ void View::mark(const Geometry::Mover &mover, const Shown &shown)
     }
     const World &world = geometry_.world();
     const std::vector<Eigen::Vector3f> body = swept_corners(mover.box, shown.begin, shown.end);
-    mark(body);
+    if (!world.has_sun && !world.lamp_position) {
+        mark(body); /* otherwise in its shadow's hull */
+    }
     if (world.has_sun) {
         mark(with_sun_shadow(body, to_sun_, geometry_.bounds()));
     }

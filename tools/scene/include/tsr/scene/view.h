@@ -69,9 +69,10 @@ class View
     const Geometry &geometry_;
     Camera camera_;
     Eigen::Vector3f eye_;
-    std::vector<Eigen::Vector2f> image_points_; /* (x', y') of each pixel's centre */
-    std::vector<Eigen::Vector3f> directions_;   /* of each sample, in site axes */
-    float margin_ = 0;                          /* how far a pixel reaches beyond its centre in x', y' */
+    std::vector<Eigen::Vector2f> image_points_;   /* (x', y') of each pixel's centre */
+    std::vector<Eigen::AlignedBox2f> row_bounds_; /* of these, row by row */
+    std::vector<Eigen::Vector3f> directions_;     /* of each sample, in site axes */
+    float margin_ = 0;                            /* how far a pixel reaches beyond its centre in x', y' */
     Layers layers_;
     std::vector<Shown> shown_;
     std::vector<std::uint8_t> dirty_;
