@@ -133,7 +133,8 @@ struct RayCaster::Parts {
     std::uint32_t span_us = 0;
 };
 
-/* Instance i is mover i. What stands is asked by itself: most rays meet nothing else, and spare an instance's way round.
+/* Instance i is mover i. What stands is asked by itself: most rays meet nothing else, and spare an instance's way
+ * round.
  */
 RayCaster::RayCaster(const Geometry &geometry) : parts_(std::make_unique<Parts>())
 {
