@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "tsr/emulator/record_json.h"
+#include "tsr/host/csv.h"
 
 namespace tsr
 {
@@ -53,24 +54,9 @@ template <typename Record> Table table_of(const Record &example, const std::vect
     return table;
 }
 
-std::string quoted(const std::string &text)
-{
-    if (text.find_first_of(",\"\r\n") == std::string::npos) {
-        return text;
-    }
-    std::string cell = "\"";
-    for (const char character : text) {
-        cell += character;
-        if (character == '"') {
-            cell += '"';
-        }
-    }
-    return cell + '"';
-}
-
 std::string cell_of(const Json &value)
 {
-    return value.is_null() ? "" : value.is_string() ? quoted(value.get<std::string>()) : value.dump();
+    return value.is_null() ? "" : value.is_string() ? csv_field(value.get<std::string>()) : value.dump();
 }
 
 } // namespace
@@ -101,7 +87,7 @@ std::string csv_of(const Table &table)
         }
         text += '\n';
     };
-    add_line(table.columns, quoted);
+    add_line(table.columns, csv_field);
     for (const auto &row : table.rows) {
         add_line(row, cell_of);
     }

@@ -59,6 +59,26 @@ struct Air::Transmission {
     std::vector<int> levels_q4;     /* dBm at each of the sender's neighbours, in their order */
 };
 
+namespace air
+{
+
+inline constexpr std::uint16_t kBroadcast = 0xffff;
+inline constexpr std::size_t kAddressedLen = 9;   /* up to the source address: shorter ones are for nobody */
+inline constexpr std::uint8_t kAckRequest = 0x20; /* frame control field, IEEE 802.15.4-2015, 7.2.2.1 */
+
+/* Of frames of at least kAddressedLen octets. */
+inline unsigned pan_of(const std::vector<std::uint8_t> &psdu)
+{
+    return psdu[3] | psdu[4] << 8;
+}
+
+inline unsigned destination_of(const std::vector<std::uint8_t> &psdu)
+{
+    return psdu[5] | psdu[6] << 8;
+}
+
+} // namespace air
+
 } // namespace tsr
 
 #endif
