@@ -3,6 +3,8 @@
  *
  * SPDX-License-Identifier: Apache-2.0
  */
+#include <map>
+
 #include <gtest/gtest.h>
 
 #include "tsr/hal/air/decibel.h"
@@ -25,44 +27,54 @@ class AirReceiverTest : public testing::Test
   protected:
     explicit AirReceiverTest(AirModel air_model = {}) : model(air_model), receiver(model)
     {
-        receiver.tune(kChannel, 0);
+        receiver.tune(kChannel, {}, 0);
         receiver.listen(true, 0);
     }
     void begin(std::uint64_t number, std::uint64_t start_us, double dbm, std::uint8_t channel = kChannel)
     {
-        receiver.begin({number, start_us, start_us + kFrameUs, level_q4(dbm), channel});
+        const Signal signal{number, start_us, start_us + kFrameUs, level_q4(dbm), channel};
+        receiver.begin(signal);
+        on_air[number] = signal;
     }
-    double end(std::uint64_t number, std::uint64_t start_us)
+    void fade(std::uint64_t number)
     {
-        return static_cast<double>(receiver.end(number, start_us + kFrameUs).success_q32) / kCertainQ32;
+        const Signal signal = on_air.at(number);
+        receiver.fade(signal.level_q4, signal.channel, signal.end_us);
+        on_air.erase(number);
+    }
+    double end(std::uint64_t number)
+    {
+        if (on_air.contains(number)) {
+            fade(number);
+        }
+        return static_cast<double>(receiver.end(number).success_q32) / kCertainQ32;
     }
     /* A second frame, so much weaker and later. */
     double first_survives(double weaker_db, std::uint64_t later_us)
     {
-        Receiver fresh(model);
-        receiver = fresh;
-        receiver.tune(kChannel, 0);
+        receiver = Receiver(model);
+        receiver.tune(kChannel, {}, 0);
         receiver.listen(true, 0);
         begin(1, 0, -60);
         begin(2, later_us, -60 - weaker_db);
-        const double success = end(1, 0);
-        EXPECT_EQ(end(2, later_us), 0);
+        const double success = end(1);
+        EXPECT_EQ(end(2), 0);
         return success;
     }
 
     ReceiverModel model;
     Receiver receiver;
+    std::map<std::uint64_t, Signal> on_air;
 };
 
 TEST_F(AirReceiverTest, NoiseComesFromTheSensitivity)
 {
-    begin(1, 0, -95);
-    receiver.end(1, 26 * 32); /* 20 octets */
     Receiver fresh(model);
-    fresh.tune(kChannel, 0);
+    fresh.tune(kChannel, {}, 0);
     fresh.listen(true, 0);
-    fresh.begin({1, 0, 26 * 32, level_q4(-95), kChannel});
-    const double success = static_cast<double>(fresh.end(1, 26 * 32).success_q32) / kCertainQ32;
+    fresh.begin({1, 0, 26 * 32, level_q4(-95), kChannel}); /* 20 octets */
+    fresh.fade(level_q4(-95), kChannel, 26 * 32);
+    const double success = static_cast<double>(fresh.end(1).success_q32) / kCertainQ32;
     EXPECT_GE(success, 0.99);
     EXPECT_LT(success, 0.993);
 }
@@ -92,28 +104,28 @@ TEST_F(AirReceiverTest, InterferenceAddsUp)
 {
     begin(1, 0, -60);
     begin(2, 300, -65);
-    EXPECT_GT(end(1, 0), 0.99);
-    end(2, 300);
+    EXPECT_GT(end(1), 0.99);
+    end(2);
     begin(3, 10'000, -60);
     begin(4, 10'300, -65);
     begin(5, 10'300, -65);
     begin(6, 10'300, -65);
-    EXPECT_LT(end(3, 10'000), 0.3); /* 0.2 dB are left */
+    EXPECT_LT(end(3), 0.3); /* 0.2 dB are left */
 }
 
 TEST_F(AirReceiverTest, LaterFrameTakesTheReceiverOnlyInThePreamble)
 {
     begin(1, 0, -80);
     begin(2, 100, -70); /* preamble and SFD take 160 us */
-    EXPECT_EQ(end(1, 0), 0);
-    EXPECT_GT(end(2, 100), kWithoutDoubt);
+    EXPECT_EQ(end(1), 0);
+    EXPECT_GT(end(2), kWithoutDoubt);
     begin(3, 10'000, -80);
     begin(4, 10'160, -70);
-    EXPECT_LT(end(3, 10'000), kHopeless); /* followed to its end, in vain */
-    EXPECT_EQ(end(4, 10'160), 0);
+    EXPECT_LT(end(3), kHopeless); /* followed to its end, in vain */
+    EXPECT_EQ(end(4), 0);
     begin(5, 20'000, -80);
     begin(6, 20'100, -78); /* less than the capture margin */
-    EXPECT_EQ(end(6, 20'100), 0);
+    EXPECT_EQ(end(6), 0);
 }
 
 TEST_F(AirReceiverTest, DeafReceiverLosesTheFrame)
@@ -121,23 +133,49 @@ TEST_F(AirReceiverTest, DeafReceiverLosesTheFrame)
     begin(1, 0, -60);
     receiver.listen(false, 1000);
     receiver.listen(true, 1001);
-    EXPECT_EQ(end(1, 0), 0);
+    EXPECT_EQ(end(1), 0);
     begin(2, 10'000, -60);
-    receiver.tune(20, 10'500);
-    receiver.tune(kChannel, 10'501);
-    EXPECT_EQ(end(2, 10'000), 0);
+    const int level = level_q4(-60);
+    receiver.tune(20, {}, 10'500);
+    receiver.tune(kChannel, {&level, 1}, 10'501);
+    EXPECT_EQ(end(2), 0);
     begin(3, 20'000, -60, 20); /* elsewhere */
     begin(4, 20'100, -60);
-    EXPECT_EQ(end(3, 20'000), 0);
-    EXPECT_GT(end(4, 20'100), kWithoutDoubt);
+    EXPECT_EQ(end(3), 0);
+    EXPECT_GT(end(4), kWithoutDoubt);
 }
 
 TEST_F(AirReceiverTest, WhatIsTooWeakIsNotFollowed)
 {
     begin(1, 0, -102);
     begin(2, 1000, -60);
-    EXPECT_EQ(end(1, 0), 0);
-    EXPECT_GT(end(2, 1000), kWithoutDoubt);
+    EXPECT_EQ(end(1), 0);
+    EXPECT_GT(end(2), kWithoutDoubt);
+}
+
+TEST_F(AirReceiverTest, WhatNobodyWantsHoldsTheReceiverAllTheSame)
+{
+    begin(1, 0, -80);
+    receiver.disregard();
+    begin(2, 1000, -60);
+    receiver.start_cca(1500);
+    EXPECT_FALSE(receiver.finish_cca());
+    EXPECT_EQ(end(1), 0);
+    EXPECT_EQ(end(2), 0);
+    begin(3, 10'000, -80);
+    EXPECT_GT(end(3), kWithoutDoubt);
+}
+
+/* What was on air on the other channel when it was tuned to disturbs as what begins later. */
+TEST_F(AirReceiverTest, TuningMeetsWhatIsOnAirThere)
+{
+    const int level = level_q4(-60);
+    receiver.tune(20, {&level, 1}, 0);
+    begin(1, 100, -60, 20);
+    EXPECT_LT(end(1), 0.05);
+    receiver.fade(level, 20, 4000);
+    begin(2, 5000, -60, 20);
+    EXPECT_GT(end(2), kWithoutDoubt);
 }
 
 class AirCcaTest : public AirReceiverTest
@@ -158,12 +196,13 @@ TEST_F(AirCcaTest, EnergyFromTheThresholdOnMakesItBusy)
     EXPECT_TRUE(clear(500));
     begin(2, 600, -110);
     EXPECT_TRUE(clear(700));
-    end(1, 0);
+    end(1);
     receiver.listen(false, 2999);
     begin(3, 3000, -85);
     receiver.listen(true, 3001);
     EXPECT_FALSE(clear(3500));
-    EXPECT_TRUE(clear(3000 + kFrameUs)); /* at its end it is over, whoever is asked first */
+    fade(3);
+    EXPECT_TRUE(clear(3000 + kFrameUs)); /* at its end it is over */
 }
 
 TEST_F(AirCcaTest, TwoWeakOnesAddUp)
@@ -185,13 +224,13 @@ TEST_F(AirCcaTest, WhatEndsOrBeginsWithinItsTimeCounts)
 {
     begin(1, 0, -60);
     receiver.start_cca(kFrameUs - 50);
-    end(1, 0);
+    end(1);
     EXPECT_FALSE(receiver.finish_cca());
     receiver.start_cca(10'000);
     begin(2, 10'100, -60);
     EXPECT_FALSE(receiver.finish_cca());
     begin(3, 11'000, -60, 20); /* another channel */
-    end(2, 10'100);
+    end(2);
     EXPECT_TRUE(clear(13'000));
 }
 
