@@ -1,8 +1,9 @@
-"""The laboratory: what the change detector makes of the five scenes, and how fast scenes run.
+"""The laboratory: what the change detector makes of the five scenes, and how fast scenes and crowds run.
 
 SPDX-License-Identifier: Apache-2.0
 """
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -18,8 +19,11 @@ SCENES = ("house", "car", "bedroom", "street", "tank")
 SEEDS = (1, 2, 3)
 CAUGHT_MIN, FALSE_MAX = 0.99, 0.005
 # 100 nodes, one frame a second each, in the scene that has room for them.
-CROWD = {"scenario": "street", "speed_min": 5,
-         "settings": ("pairs.count=100", "pairs.watch_period_ms=1000", "duration_s=60", "scene.sun_hours=0.02")}
+STREET_SPEED_MIN = 5
+STREET = ("pairs.count=100", "pairs.watch_period_ms=1000", "duration_s=60", "scene.sun_hours=0.02")
+# 1,000 nodes as the scenario file has them, and all switched on at one instant: then the channel is full.
+CROWD_NODES, CROWD_SPEED_MIN, CROWD_KB_MAX = 1000, 20, 300
+RUSH = ("duration_s=60", "pairs.start_within_s=0")
 
 
 def target(name, value, unit, goal=None, met=None, how=""):
@@ -30,7 +34,7 @@ def build():
     release = SOURCE / "build/release"
     board.run(["cmake", "--preset", "release", "-DTSR_TESTS=ON"], cwd=SOURCE)
     board.run(["cmake", "--build", release, "--target", "scene_changes", "scene_doorways", "scene_zones",
-               "tarsier-emulator", "tarsier-sink"], timeout_s=1800)
+               "tarsier", "tarsier-emulator", "tarsier-sink"], timeout_s=1800)
     return release / "bin"
 
 
@@ -56,25 +60,55 @@ def change_targets(rows):
                      FALSE_MAX if goal else None, false <= FALSE_MAX if goal else None, "")
 
 
-def crowd(programs):
-    progress.tell("100 nodes in a scene")
+def emulate(programs, scenario, settings):
+    """What a run says of itself, and what it took: processor time of emulator and sink, memory of the larger of them."""
     with tempfile.TemporaryDirectory() as out:
-        settings = [word for setting in CROWD["settings"] for word in ("--set", setting)]
-        board.run([programs / "tarsier-emulator", SOURCE / f"emulator/scenarios/{CROWD['scenario']}.toml", *settings, "--quiet",
-                   "--out", out], timeout_s=3600)
-        return json.loads((pathlib.Path(out) / "summary.json").read_text())
+        words = [word for setting in settings for word in ("--set", setting)]
+        run = subprocess.Popen([programs / "tarsier-emulator", SOURCE / f"emulator/scenarios/{scenario}.toml", *words, "--quiet",
+                                "--out", out], stdout=subprocess.DEVNULL)
+        _, status, usage = os.wait4(run.pid, 0)
+        run.returncode = os.waitstatus_to_exitcode(status)
+        if run.returncode != 0:
+            raise RuntimeError(f"{scenario}: exit status {run.returncode}")
+        summary = json.loads((pathlib.Path(out) / "summary.json").read_text())
+    return {"nodes": len(summary["nodes"]), "virtual_s": summary["virtual_time_s"], "wall_s": summary["wall_time_s"],
+            "cpu_s": round(usage.ru_utime + usage.ru_stime, 1), "peak_kb": usage.ru_maxrss,
+            "speed": summary["virtual_time_s"] / summary["wall_time_s"], **summary["totals"]}
+
+
+def scale(programs):
+    progress.tell("100 nodes in a scene")
+    found = {"street": emulate(programs, "street", STREET)}
+    with tempfile.TemporaryDirectory() as folder:
+        frames = pathlib.Path(folder) / "house"
+        progress.tell("frames for 1,000 nodes")
+        board.run([programs / "tarsier", "render", SOURCE / "emulator/scenarios/house.toml", "--out", frames], timeout_s=1800)
+        site = f'recorded.site="{frames}/site.toml"'
+        progress.tell("1,000 nodes")
+        found["crowd"] = emulate(programs, "crowd", (site,))
+        progress.tell("1,000 nodes at one instant")
+        found["rush"] = emulate(programs, "crowd", (site, *RUSH))
+    return found
+
+
+def scale_targets(found):
+    street, crowd, rush = found["street"], found["crowd"], found["rush"]
+    yield target("100 nodes in a virtual scene", street["speed"], "x real time", STREET_SPEED_MIN, street["speed"] >= STREET_SPEED_MIN,
+                 "one frame a second each, start and report included")
+    yield target("1,000 nodes from recorded frames", crowd["speed"], "x real time", CROWD_SPEED_MIN, crowd["speed"] >= CROWD_SPEED_MIN,
+                 "emulator/scenarios/crowd.toml; start and report included")
+    yield target("1,000 nodes from recorded frames: memory of a node", crowd["peak_kb"] / CROWD_NODES, "KB", CROWD_KB_MAX,
+                 crowd["peak_kb"] <= CROWD_KB_MAX * CROWD_NODES, "peak resident set of the process; frames, start and report included")
+    yield target("1,000 nodes switched on at one instant", rush["speed"], "x real time", how="the channel is full; 60 s and 2 minutes more")
 
 
 def bench():
     programs = build()
     rows = [changes(programs, scene, seed) for scene in SCENES for seed in SEEDS]
     zone_targets, zones = zone_events.bench(programs, SOURCE / "emulator/scenarios", target)
-    summary = crowd(programs)
-    speed = summary["virtual_time_s"] / summary["wall_time_s"]
-    targets = [*change_targets(rows), *zone_targets,
-               target("100 nodes in a virtual scene", speed, "x real time", CROWD["speed_min"], speed >= CROWD["speed_min"],
-                      "one frame a second each, start and report included")]
-    return {"targets": targets, "details": {"changes": rows, "zones": zones, "crowd": summary["totals"]}}
+    found = scale(programs)
+    return {"targets": [*change_targets(rows), *zone_targets, *scale_targets(found)],
+            "details": {"changes": rows, "zones": zones, "scale": found}}
 
 
 def table(result):

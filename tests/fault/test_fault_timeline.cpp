@@ -86,6 +86,25 @@ TEST(FaultTimeline, ADeadNodeUsesNothing)
     EXPECT_GT(run.node(kLead).energy().total(), 0.0);
 }
 
+TEST(FaultTimeline, ANodeIsOffUntilItStarts)
+{
+    Site site = short_site();
+    site.nodes[4].start_ms = 400; /* the binocular node */
+    MemoryRun early(site);
+    early.simulation.run([](std::uint64_t now_us, std::uint64_t) { return now_us < 399'000; });
+    EXPECT_FALSE(early.node(kBinocular).powered());
+    EXPECT_EQ(early.node(kBinocular).energy().total(), 0.0);
+    site.faults = {{.at_us = 100'000, .kind = SiteFaultKind::reboot, .node = kBinocular},
+                   {.at_us = 200'000, .for_us = 100'000, .kind = SiteFaultKind::brown_out, .node = kBinocular}};
+    MemoryRun run(site);
+    run.run();
+    expect_all_delivered(run);
+    EXPECT_EQ(run.node(kBinocular).lives(), 1u);
+    for (const FaultNote &note : run.simulation.faults().notes()) {
+        EXPECT_TRUE(note.without_effect);
+    }
+}
+
 TEST(FaultTimeline, ARebootWithHigherCountersDeliversAgain)
 {
     for (const std::uint16_t id : {kGateway, kRelay, kLead, kWing, kBinocular}) {

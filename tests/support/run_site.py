@@ -66,6 +66,17 @@ def stored_maps(out):
             for entry in received]
 
 
+def results(out):
+    """Contents by name of what a run wrote, but for how long it took."""
+    files = {name: (out / name).read_bytes() for name in
+             ("cloud.ply", "capture.pcapng", "sink.json", "events.csv", "nodes.csv", "links.csv", "maps.csv")}
+    files.update({f"maps/{file.name}": file.read_bytes() for file in (out / "maps").iterdir()})
+    summary = json.loads((out / "summary.json").read_text())
+    del summary["wall_time_s"]
+    files["summary.json"] = json.dumps(summary).encode()
+    return files
+
+
 def check(condition, message):
     if not condition:
         print("FAILED:", message)

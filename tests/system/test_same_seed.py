@@ -1,21 +1,11 @@
 """The same seed gives the same bytes; another seed gives others."""
 # SPDX-License-Identifier: Apache-2.0
-import json
 import pathlib
 import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from run_site import check, emulate, make_scene
-
-
-def results(out):
-    files = {name: (out / name).read_bytes() for name in ("cloud.ply", "capture.pcapng", "sink.json", "nodes.csv", "links.csv", "maps.csv")}
-    files.update({f"maps/{file.name}": file.read_bytes() for file in (out / "maps").iterdir()})
-    summary = json.loads((out / "summary.json").read_text())
-    del summary["wall_time_s"]
-    files["summary.json"] = json.dumps(summary).encode()
-    return files
+from run_site import check, emulate, make_scene, results
 
 
 with tempfile.TemporaryDirectory() as folder:

@@ -30,6 +30,7 @@ TEST(HostFrames, SortsByNameAndSpacesByPeriod)
     EXPECT_EQ(frames.frame(0)->pixels[0], 'a');
     EXPECT_EQ(frames.frame(1)->pixels[0], 'b');
     EXPECT_EQ(frames.time_ms(1), 250u);
+    EXPECT_EQ(frames.length_ms(), 500u);
     EXPECT_EQ(frames.index_at(0), 0u);
     EXPECT_EQ(frames.index_at(249), 0u);
     EXPECT_EQ(frames.index_at(250), 1u);
@@ -49,6 +50,8 @@ TEST(HostFrames, TimesFileDecidesOrderAndTime)
     EXPECT_EQ(frames.time_ms(2), 50u);
     EXPECT_EQ(frames.index_at(5), 0u);
     EXPECT_EQ(frames.index_at(45), 1u);
+    EXPECT_EQ(frames.frame(0), frames.frame(2)); /* one file, one image */
+    EXPECT_EQ(frames.length_ms(), 60u);          /* the last frame stays as long as the one before it */
 }
 
 TEST(HostFrames, CacheForgetsTheOldestAndReadsAgain)

@@ -56,6 +56,7 @@ role = "lead"
 parent = 2
 frames = "left160"
 watch_period_ms = 500
+start_ms = 250
 watch = [[0, 8, 32, 16], [159, 119, 1, 1]]
 
 [[node]]
@@ -127,6 +128,8 @@ TEST(HostSite, ReadsEveryField)
     EXPECT_EQ(site.node(2)->name, "attic");
     EXPECT_EQ(site.node(2)->position_m[1], 2.5);
     EXPECT_EQ(site.node(3)->watch_period_ms, 500u);
+    EXPECT_EQ(site.node(3)->start_ms, 250u);
+    EXPECT_EQ(site.node(2)->start_ms, 0u);
     ASSERT_EQ(site.node(3)->watch.size(), 2u);
     EXPECT_EQ(site.node(3)->watch[0].y, 8);
     EXPECT_EQ(site.node(3)->watch[0].width, 32);
@@ -287,6 +290,7 @@ TEST(HostSite, RefusesPairsThatDoNotExist)
     EXPECT_SITE_REFUSED(with("wing = 4", "wing = 2"), "wing: node 2 is a relay");
     EXPECT_SITE_REFUSED(with("wing = 4\n", ""), "wing: is missing");
     EXPECT_SITE_REFUSED(kGood.substr(0, kGood.find("[[pair]]")), "a lead that no [[pair]] names");
+    EXPECT_SITE_REFUSED(with("start_ms = 250", "start_ms = -1"), "start_ms: -1 is outside 0..86400000");
     EXPECT_SITE_REFUSED(with("frames = \"left160\"", "frames_right = \"x\""), "only a binocular node");
     EXPECT_SITE_REFUSED(with("disparities = 32", "disparities = 33"), "disparities");
     EXPECT_SITE_REFUSED(with("search_start_px = 2", "search_start_px = 200"), "search_start_px: is outside -128..128");

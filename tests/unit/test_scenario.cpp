@@ -60,7 +60,7 @@ TEST_F(ScenarioFile, HasDefaultsAndTakesSettings)
 
 TEST_F(ScenarioFile, RefusesByLineAndField)
 {
-    EXPECT_EQ(refusal("name = \"t\"\n"), "scenario.toml:1: scene: is missing");
+    EXPECT_EQ(refusal("name = \"t\"\n"), "scenario.toml:1: scene: is missing, and so is recorded");
     EXPECT_EQ(refusal("name = \"t\"\n[scene]\nkind = \"moon\"\n").substr(0, 48),
               "scenario.toml:3: scene.kind: 'moon' is none of b");
     EXPECT_EQ(refusal(std::string(kTank) + "lids = 3\n"), "scenario.toml:5: scene.lids: unknown field");

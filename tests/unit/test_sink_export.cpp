@@ -70,11 +70,11 @@ TEST_F(SinkExport, WritesTheStatedFiles)
     for (const auto &[name, bytes] : files) {
         names.push_back(name);
     }
-    EXPECT_EQ(names,
-              (std::vector<std::string>{"cloud.ply", "maps/00003-0000000009-reference.png", "maps/00003-0000000009.pfm",
-                                        "maps/00003-0000000009.png", "maps/00003-0000000010-reference.png",
-                                        "maps/00003-0000000010.pfm", "maps/00003-0000000010.png",
-                                        "maps/00005-4000000000.pfm", "maps/00005-4000000000.png", "sink.json"}));
+    EXPECT_EQ(names, (std::vector<std::string>{"cloud.ply", "events.csv", "maps/00003-0000000009-reference.png",
+                                               "maps/00003-0000000009.pfm", "maps/00003-0000000009.png",
+                                               "maps/00003-0000000010-reference.png", "maps/00003-0000000010.pfm",
+                                               "maps/00003-0000000010.png", "maps/00005-4000000000.pfm",
+                                               "maps/00005-4000000000.png", "sink.json"}));
     EXPECT_NE(files.at("cloud.ply").find("element vertex 2304\n"), std::string::npos);
     EXPECT_EQ(read_pfm(folder / "out/maps/00003-0000000009.pfm").pixels[7], 4.0F);
     EXPECT_EQ(read_gray_image(folder / "out/maps/00003-0000000009-reference.png").pixels,

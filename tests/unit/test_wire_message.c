@@ -134,7 +134,7 @@ static void test_unknown_kinds_and_key_uses(void)
     seal(BODY_LEN);
     for (unsigned kind = 0; kind < 256; kind++) {
         message[0] = (uint8_t)kind;
-        TEST_ASSERT_EQUAL(kind >= 1 && kind <= 4 ? TSR_OK : TSR_ERR_FORMAT,
+        TEST_ASSERT_EQUAL(kind >= 1 && kind <= 5 ? TSR_OK : TSR_ERR_FORMAT,
                           tsr_message_parse(message, message_len, 1, 2, &read));
     }
     message[0] = TSR_MESSAGE_WAKE;

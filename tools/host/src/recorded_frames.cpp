@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
-#include <set>
+#include <map>
 #include <sstream>
 #include <string>
 
@@ -89,13 +89,15 @@ void RecordedFrames::list_folder()
     }
     std::sort(files.begin(), files.end());
     for (std::size_t i = 0; i < files.size(); i++) {
-        entries_.push_back({files[i], std::uint64_t{period_ms_} * i, nullptr});
+        files_.push_back({files[i], nullptr});
+        entries_.push_back({i, std::uint64_t{period_ms_} * i});
     }
 }
 
 void RecordedFrames::read_times(const fs::path &times_file)
 {
     std::istringstream lines(read_text_file(times_file, kTimesLenMax));
+    std::map<std::string, std::size_t> known; /* a file may come many times */
     std::string line;
     for (int number = 1; std::getline(lines, line); number++) {
         const std::string place = times_file.string() + ":" + std::to_string(number);
@@ -120,27 +122,27 @@ void RecordedFrames::read_times(const fs::path &times_file)
         if (!entries_.empty() && time_ms <= entries_.back().time_ms) {
             throw InputError(place, "time_ms", "is not later than the line before");
         }
-        entries_.push_back({folder_ / name, time_ms, nullptr});
+        const auto [file, is_new] = known.emplace(name, files_.size());
+        if (is_new) {
+            files_.push_back({folder_ / name, nullptr});
+        }
+        entries_.push_back({file->second, time_ms});
     }
 }
 
 void RecordedFrames::check_sizes()
 {
-    std::set<fs::path> seen; /* times.csv may name a file many times */
-    for (const Entry &entry : entries_) {
-        if (!seen.insert(entry.file).second) {
-            continue;
-        }
-        const ImageSize size = read_image_size(entry.file);
+    for (const File &file : files_) {
+        const ImageSize size = read_image_size(file.path);
         if (size_ == ImageSize{}) {
             size_ = size;
         }
         if (size != size_) {
-            throw InputError(entry.file.string(), "size", shown(size) + ", the frames before it are " + shown(size_));
+            throw InputError(file.path.string(), "size", shown(size) + ", the frames before it are " + shown(size_));
         }
     }
     if (size_.width > TSR_IMAGE_WIDTH_MAX || size_.height > TSR_IMAGE_HEIGHT_MAX) {
-        throw InputError(entries_.front().file.string(), "size", shown(size_) + ", a node's frame is at most 640x480");
+        throw InputError(files_.front().path.string(), "size", shown(size_) + ", a node's frame is at most 640x480");
     }
 }
 
@@ -159,21 +161,22 @@ std::size_t RecordedFrames::index_at(std::uint64_t time_ms) const
 
 std::shared_ptr<const GrayImage> RecordedFrames::frame(std::size_t index)
 {
-    Entry &entry = entries_.at(index);
-    if (entry.pixels) {
-        return entry.pixels;
+    const std::size_t number = entries_.at(index).file;
+    File &file = files_[number];
+    if (file.pixels) {
+        return file.pixels;
     }
-    auto image = std::make_shared<const GrayImage>(read_gray_image(entry.file));
+    auto image = std::make_shared<const GrayImage>(read_gray_image(file.path));
     if (image->size() != size_) {
-        throw InputError(entry.file.string(), "size", shown(image->size()) + ", was " + shown(size_));
+        throw InputError(file.path.string(), "size", shown(image->size()) + ", was " + shown(size_));
     }
     const std::size_t room = std::max<std::size_t>(1, cache_max_ / image->pixels.size());
     while (cached_.size() >= room) {
-        entries_[cached_.front()].pixels.reset();
+        files_[cached_.front()].pixels.reset();
         cached_.pop_front();
     }
-    entry.pixels = image;
-    cached_.push_back(index);
+    file.pixels = image;
+    cached_.push_back(number);
     return image;
 }
 

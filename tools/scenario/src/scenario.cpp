@@ -164,8 +164,9 @@ void read_recorded(TomlFields &fields, ScenarioRecorded &recorded)
 }
 
 /* What the recorded site does not say of its own pairs. */
-void read_recorded_pairs(TomlFields &fields, ScenarioRecorded &recorded)
+void read_recorded_pairs(TomlFields &fields, Scenario &scenario)
 {
+    ScenarioRecorded &recorded = *scenario.recorded;
     recorded.count = static_cast<int>(fields.integer("count", 1, kCrowdMax));
     if (fields.has("watch_period_ms")) {
         recorded.watch_period_ms = static_cast<std::uint32_t>(fields.integer("watch_period_ms", 1, kWatchPeriodMsMax));
@@ -174,6 +175,9 @@ void read_recorded_pairs(TomlFields &fields, ScenarioRecorded &recorded)
         recorded.reference_image = fields.boolean("reference_image", true);
     }
     recorded.start_within_s = fields.number("start_within_s", 0, kStartMsMax / 1000.0, recorded.start_within_s);
+    if (recorded.start_within_s > scenario.scene.duration_s) {
+        fields.refuse("start_within_s", "is after duration_s, the scenario's end");
+    }
     fields.refuse_unknown();
 }
 
@@ -208,7 +212,7 @@ void read_crowd(TomlFields &top, Scenario &scenario)
         top.refuse("pairs", "is missing: recorded needs its count");
     }
     read_table(top, "recorded", read_recorded, scenario.recorded.emplace());
-    read_table(top, "pairs", read_recorded_pairs, *scenario.recorded);
+    read_table(top, "pairs", read_recorded_pairs, scenario);
 }
 
 } // namespace

@@ -11,7 +11,8 @@
  *
  * All frames have one size, at most 640x480 (tsr/base/image.h): this is
  * checked from the headers when the folder is opened. Pixels are read when a
- * frame is first asked for and kept while the cache has room.
+ * frame is first asked for and kept while the cache has room, once for each
+ * file however often times.csv names it.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -44,7 +45,7 @@ class RecordedFrames
     std::size_t count() const { return entries_.size(); }
     ImageSize size() const { return size_; }
     const std::filesystem::path &folder() const { return folder_; }
-    const std::filesystem::path &file(std::size_t index) const { return entries_.at(index).file; }
+    const std::filesystem::path &file(std::size_t index) const { return files_[entries_.at(index).file].path; }
     std::uint64_t time_ms(std::size_t index) const { return entries_.at(index).time_ms; }
     /* Until the last frame has been shown as long as the one before it; one period_ms if it is alone. */
     std::uint64_t length_ms() const;
@@ -54,10 +55,13 @@ class RecordedFrames
     std::shared_ptr<const GrayImage> frame(std::size_t index);
 
   private:
-    struct Entry {
-        std::filesystem::path file;
-        std::uint64_t time_ms = 0;
+    struct File {
+        std::filesystem::path path;
         std::shared_ptr<const GrayImage> pixels; /* null: not in the cache */
+    };
+    struct Entry {
+        std::size_t file = 0; /* index */
+        std::uint64_t time_ms = 0;
     };
 
     void list_folder();
@@ -65,8 +69,9 @@ class RecordedFrames
     void check_sizes();
 
     std::filesystem::path folder_;
+    std::vector<File> files_;
     std::vector<Entry> entries_;
-    std::deque<std::size_t> cached_; /* oldest first */
+    std::deque<std::size_t> cached_; /* files, oldest first */
     ImageSize size_;
     std::uint32_t period_ms_;
     std::size_t cache_max_;
