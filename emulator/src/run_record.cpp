@@ -106,14 +106,12 @@ Fate fate_of(const PhaseChange &end, Role role, bool committed)
     if (role == Role::wing) {
         return end.before == TSR_PHASE_SENDING ? Fate::view : Fate::failed;
     }
-    if (committed) {
-        return Fate::committed;
-    }
     switch (end.before) {
+    case TSR_PHASE_MEDIAN: /* with an EVENT unanswered there is nothing to measure against */
     case TSR_PHASE_MEASURING: return Fate::measured;
     case TSR_PHASE_COMPARING: return Fate::withheld;
-    case TSR_PHASE_SEALING: /* it went on watching: settled by settle_sealed() */
-    case TSR_PHASE_SENDING: return Fate::lost;
+    case TSR_PHASE_SEALING: /* it goes on watching: settle_sealed() finds what becomes of its map */
+    case TSR_PHASE_SENDING: return committed ? Fate::committed : Fate::lost;
     default: return Fate::failed;
     }
 }

@@ -12,6 +12,8 @@
 #define REPORTED_BEGUN 1u /* of a rule with a limit; of a surface its disparity is reported */
 #define Q8_OF_Q4 16
 
+_Static_assert(TSR_ZONE_NO_DISPARITY == TSR_EVENT_NO_DISPARITY, "a zone's disparity goes on air as it is");
+
 const char *tsr_node_check_rules(const struct tsr_node_config *config)
 {
     if (config->rule_count > TSR_DEPTH_RULES_MAX) {

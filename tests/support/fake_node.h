@@ -282,4 +282,19 @@ static inline void fake_node_hear_message(struct fake_node *fake, uint16_t neigh
     fake_node_hear_piece(fake, neighbour, message, bytes, len, counter, 0, false);
 }
 
+/* An answer to one of the node's messages, from its partner or, under the node's key, the sink. */
+static inline void fake_node_hear_status(struct fake_node *fake, uint8_t key_use, uint16_t origin, uint16_t message_id,
+                                         enum tsr_delivery state)
+{
+    uint8_t body[TSR_BODY_STATUS_MAX];
+    size_t len = 0;
+    struct tsr_body_status status;
+    memset(&status, 0, sizeof status);
+    status.message_id = message_id;
+    status.state = (uint8_t)state;
+    (void)tsr_body_write_status(&status, body, sizeof body, &len);
+    const struct fake_message message = {TSR_MESSAGE_STATUS, key_use, origin, fake->node.config.address, body, len};
+    fake_node_hear_message(fake, key_use == TSR_KEY_PAIR ? origin : FAKE_RELAY, &message);
+}
+
 #endif

@@ -100,6 +100,27 @@ class CrowdTest : public testing::Test
     const test::Folder folder_;
 };
 
+/* Those of the recorded site and those of the scenario, under the names that the copies have. */
+TEST_F(CrowdTest, ZonesAreTheCopies)
+{
+    Site recorded = load_site(folder_ / "site.toml");
+    recorded.pairs[0].zones = {SiteZone{"there", recorded.pairs[0].name, {0, 0, 4, 4}, ZoneKind::changed, 0.1}};
+    write_site(folder_ / "site.toml", recorded);
+    std::ofstream(folder_ / "crowd.toml")
+        << "name = \"c\"\nduration_s = 20\n[recorded]\nsite = \"site.toml\"\n[pairs]\ncount = 3\n"
+        << "[[zone]]\nname = \"here\"\nrectangle = [0, 0, 4, 4]\nchanged_by_m = 0.1\n";
+    const Crowd crowd = stage_crowd(load_scenario(folder_ / "crowd.toml", {}));
+    write_site(folder_ / "again.toml", crowd.site);
+    const Site again = load_site(folder_ / "again.toml");
+    ASSERT_EQ(again.pairs.size(), 3u);
+    for (std::size_t i = 0; i < again.pairs.size(); ++i) {
+        const bool copied = crowd.pairs[i].original == 0;
+        ASSERT_EQ(again.pairs[i].zones.size(), copied ? 2u : 1u);
+        EXPECT_EQ(again.pairs[i].zones.front().name, copied ? "there" : "here");
+        EXPECT_EQ(again.pairs[i].zones.back().name, "here");
+    }
+}
+
 TEST_F(CrowdTest, CopiesThePairsInTurn)
 {
     const Crowd crowd = stage_crowd(load("spacing_m = 10\n", "count = 9\nreference_image = false\n"));

@@ -118,15 +118,7 @@ static void run_for(uint64_t time_us)
 
 static void answer(uint16_t message_id, enum tsr_delivery state)
 {
-    uint8_t body[TSR_BODY_STATUS_MAX];
-    size_t len = 0;
-    struct tsr_body_status status;
-    memset(&status, 0, sizeof status);
-    status.message_id = message_id;
-    status.state = (uint8_t)state;
-    TEST_ASSERT_EQUAL(TSR_OK, tsr_body_write_status(&status, body, sizeof body, &len));
-    const struct fake_message message = {TSR_MESSAGE_STATUS, TSR_KEY_NODE, TSR_ADDRESS_SINK, FAKE_BINOCULAR, body, len};
-    fake_node_hear_message(&fake, FAKE_RELAY, &message);
+    fake_node_hear_status(&fake, TSR_KEY_NODE, TSR_ADDRESS_SINK, message_id, state);
     pass(200);
     (void)fake_node_run(&fake, 4);
 }

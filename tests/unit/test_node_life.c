@@ -112,15 +112,7 @@ static void hear_view(void)
 
 static void hear_status(uint8_t key_use, uint16_t origin, uint16_t message_id, enum tsr_delivery state)
 {
-    uint8_t body[TSR_BODY_STATUS_MAX];
-    size_t len = 0;
-    struct tsr_body_status status;
-    memset(&status, 0, sizeof status);
-    status.message_id = message_id;
-    status.state = (uint8_t)state;
-    TEST_ASSERT_EQUAL(TSR_OK, tsr_body_write_status(&status, body, sizeof body, &len));
-    const struct fake_message message = {TSR_MESSAGE_STATUS, key_use, origin, fake.node.config.address, body, len};
-    fake_node_hear_message(&fake, key_use == TSR_KEY_PAIR ? origin : FAKE_RELAY, &message);
+    fake_node_hear_status(&fake, key_use, origin, message_id, state);
     (void)fake_node_run(&fake, STEPS_MAX);
 }
 

@@ -149,9 +149,9 @@ TEST(RunRecord, EveryMapHasItsCommit)
     EXPECT_EQ(record.simulation->traffic().commits().size(), 4u) << "each message once";
 }
 
-TEST(RunRecord, EpisodesAgreeWithTheCounters)
+void expect_episodes_agree(const Site &site)
 {
-    MemoryRun run(lossy_site());
+    MemoryRun run(site);
     run.run();
     const RunRecord record = record_of(run);
     for (const NodeRecord &node : record.nodes) {
@@ -164,10 +164,27 @@ TEST(RunRecord, EpisodesAgreeWithTheCounters)
         }
         EXPECT_EQ(fates[Fate::committed], node.counters.maps_sent) << node.site->id;
         EXPECT_EQ(fates[Fate::withheld], node.counters.maps_withheld) << node.site->id;
+        EXPECT_EQ(fates[Fate::measured], node.counters.maps_measured) << node.site->id;
         EXPECT_EQ(fates[Fate::lost], node.counters.maps_lost) << node.site->id;
         EXPECT_EQ(fates[Fate::view], node.counters.views_sent + node.counters.views_lost) << node.site->id;
         EXPECT_EQ(fates[Fate::under_way], 0u) << node.site->id;
     }
+}
+
+TEST(RunRecord, EpisodesAgreeWithTheCounters)
+{
+    expect_episodes_agree(lossy_site());
+}
+
+/* Two cameras on a board go on watching while their map is under way. */
+TEST(RunRecord, EpisodesOfNodesWithZonesAgreeWithTheCounters)
+{
+    Site site = lossy_site();
+    for (SitePair &pair : site.pairs) {
+        pair.zones = {SiteZone{"all", pair.name, {0, 0, pair.width, pair.height}, ZoneKind::changed, 0.05}};
+        pair.zones[0].every_s = 0.001;
+    }
+    expect_episodes_agree(site);
 }
 
 TEST(RunRecord, ARunThatIsStoppedSaysSo)

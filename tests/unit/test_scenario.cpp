@@ -58,6 +58,21 @@ TEST_F(ScenarioFile, HasDefaultsAndTakesSettings)
     EXPECT_FALSE(tsr::is_scenario_file(write("[site]\nname = \"s\"\n")));
 }
 
+TEST_F(ScenarioFile, AZoneWithoutAPairIsEveryPairs)
+{
+    const std::string zone = "[[zone]]\nname = \"level\"\nrectangle = [40, 40, 20, 20]\nchanged_by_m = 0.1\n";
+    const auto staging = tsr::stage_scenario(tsr::load_scenario(write(kTank + zone), {}));
+    for (const tsr::SitePair &pair : staging.site.pairs) {
+        ASSERT_EQ(pair.zones.size(), 1u);
+        EXPECT_EQ(pair.zones[0].name, "level");
+    }
+    const auto one = tsr::stage_scenario(tsr::load_scenario(write(kTank + zone + "pair = \"pair 2\"\n"), {}));
+    EXPECT_TRUE(one.site.pairs[0].zones.empty());
+    EXPECT_EQ(one.site.pairs[1].zones.size(), 1u);
+    EXPECT_EQ(refusal(kTank + zone + "pair = \"attic\"\n"),
+              "scenario.toml:5: zone 'level': pair: there is no pair 'attic'");
+}
+
 TEST_F(ScenarioFile, RefusesByLineAndField)
 {
     EXPECT_EQ(refusal("name = \"t\"\n"), "scenario.toml:1: scene: is missing, and so is recorded");

@@ -148,11 +148,11 @@ std::string pair_text(const SitePair &pair)
     return text;
 }
 
-std::string zone_text(const SiteZone &zone)
+std::string zone_text(const SitePair &pair, const SiteZone &zone)
 {
     const SiteRectangle &part = zone.part;
     std::string text = "\n[[zone]]\n";
-    text += line("pair", quoted(zone.pair));
+    text += line("pair", quoted(pair.name));
     text += line("name", quoted(zone.name));
     text += line("rectangle",
                  list(std::array<double, 4>{double(part.x), double(part.y), double(part.width), double(part.height)}));
@@ -199,7 +199,7 @@ void write_site(const std::filesystem::path &file, const Site &site)
     }
     for (const SitePair &pair : site.pairs) {
         for (const SiteZone &zone : pair.zones) {
-            text += zone_text(zone);
+            text += zone_text(pair, zone);
         }
     }
     for (const SiteFault &fault : site.faults) {

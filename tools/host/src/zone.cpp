@@ -144,7 +144,6 @@ void place_zones(Site &site, const std::vector<SiteZone> &zones)
         for (SitePair &pair : site.pairs) {
             if (zone.pair.empty() || zone.pair == pair.name) {
                 pair.zones.push_back(zone);
-                pair.zones.back().pair = pair.name;
                 placed = true;
             }
         }

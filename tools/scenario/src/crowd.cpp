@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenario_site.h"
 #include "tree.h"
 #include "tsr/host/input_error.h"
 #include "tsr/host/site_fields.h"
@@ -207,21 +208,15 @@ Crowd stage_crowd(const Scenario &scenario)
 {
     Crowd crowd;
     crowd.recorded = load_recorded(scenario);
+    crowd.site = site_of(scenario);
     Site &site = crowd.site;
-    site.file = scenario.file;
-    site.name = scenario.name;
-    site.seed = scenario.seed;
-    site.radio = scenario.radio;
-    site.thresholds = scenario.thresholds;
-    site.battery = scenario.battery;
-    site.faults = scenario.faults;
-    place_zones(site, scenario.zones);
     const auto count = static_cast<std::size_t>(scenario.recorded->count);
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t original = i % crowd.recorded.pairs.size();
         add_copy(site, crowd.recorded, crowd.recorded.pairs[original], scenario);
         crowd.pairs.push_back({original, offset_ms_of(scenario, i)});
     }
+    place_zones(site, scenario.zones);
     crowd.pause_ms = rounded(scenario.recorded->pause_s * 1000);
     site.nodes.push_back(make_gateway(site, crowd.recorded.gateway().position_m[2]));
     join_tree(site, kReachM);

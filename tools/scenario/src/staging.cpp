@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "impossible.h"
+#include "scenario_site.h"
 #include "tree.h"
 #include "tsr/host/input_error.h"
 #include "tsr/host/site_fields.h"
@@ -138,14 +139,8 @@ Staging stage_scenario(const Scenario &scenario)
     Staging staging;
     staging.scene = std::make_unique<scene::Scene>(scene::make_scene(scenario.scene, scenario.pairs.layout));
     staging.geometry = std::make_unique<scene::Geometry>(staging.scene->world);
+    staging.site = site_of(scenario);
     Site &site = staging.site;
-    site.file = scenario.file;
-    site.name = scenario.name;
-    site.seed = scenario.seed;
-    site.radio = scenario.radio;
-    site.thresholds = scenario.thresholds;
-    site.battery = scenario.battery;
-    site.faults = scenario.faults;
     place_pairs(staging, scenario);
     place_zones(site, scenario.zones);
     refuse_impossible(scenario, staging);

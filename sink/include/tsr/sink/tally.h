@@ -28,13 +28,13 @@ enum class Cause {
     message_abandoned,    /* its place was needed before it was complete */
     message_format,       /* header of the message, or its kind */
     not_authentic,        /* wrong key or changed bytes */
-    body_format,          /* authentic, but no map message */
+    body_format,          /* authentic, but neither a map nor events */
     map_format,           /* the coded map does not decode */
     reference_format,     /* the coded reference image does not decode, or has another size */
     no_pair,              /* origin matches no pair of site.toml */
-    other_settings,       /* size, disparities or d0 differ from site.toml */
-    counter_reused,       /* a second, different message under one counter */
-    store_failed,         /* the database did not commit */
+    other_settings, /* size, disparities or d0 differ from site.toml, or an event is of a zone that it does not have */
+    counter_reused, /* a second, different message under one counter */
+    store_failed,   /* the database did not commit */
     cause_count
 };
 

@@ -3,7 +3,7 @@
  *
  *   nearer   share of pixels with Z <= limit     begins at begin_px, ends below end_px
  *   farther  share of pixels with Z > limit      likewise
- *   surface  Z of the surface in the zone      whenever |Z - Z reported| >= change_mm
+ *   surface  Z of the surface in the zone        whenever |Z - Z reported| >= change_mm
  *
  *   Z = scale / (d + d0)                         docs/math.md, eqs. (4), (97)
  *
@@ -18,8 +18,9 @@
 #define TSR_NODE_DEPTH_RULE_H
 
 #include "tsr/vision/zone.h"
+#include "tsr/wire/body.h"
 
-#define TSR_DEPTH_RULES_MAX 8
+#define TSR_DEPTH_RULES_MAX TSR_BODY_EVENTS_MAX /* of a node: what one EVENT can tell of */
 
 struct tsr_depth_rule {
     struct tsr_zone_config zone; /* limit_q4: of d, at the limit's depth */

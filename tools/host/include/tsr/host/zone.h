@@ -11,12 +11,16 @@
 #include <cstdint>
 #include <string>
 
+extern "C" {
+#include "tsr/wire/body.h"
+}
+
 namespace tsr
 {
 
 struct SitePair;
 
-inline constexpr std::size_t kZonesMax = 8; /* of a pair; the node's own limit */
+inline constexpr std::size_t kZonesMax = TSR_BODY_EVENTS_MAX; /* of a pair: what one EVENT can tell of */
 
 struct SiteRectangle { /* px of the left camera's picture */
     int x = 0;
@@ -33,7 +37,7 @@ enum class ZoneKind {
 
 struct SiteZone {
     std::string name;
-    std::string pair; /* a scenario: of every pair, if empty */
+    std::string pair; /* as the file names it; a scenario: of every pair, if empty. Of a pair's own zones unused */
     SiteRectangle part;
     ZoneKind kind = ZoneKind::below;
     double depth_m = 0;       /* along the left camera's axis */
