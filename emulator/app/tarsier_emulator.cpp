@@ -19,15 +19,16 @@
 
 #include <unistd.h>
 
+#include "tsr/emulator/baseline.h"
 #include "tsr/emulator/crowd_pictures.h"
 #include "tsr/emulator/out_folder.h"
 #include "tsr/emulator/pair_site.h"
 #include "tsr/emulator/preflight.h"
 #include "tsr/emulator/recorded_pictures.h"
 #include "tsr/emulator/report.h"
+#include "tsr/emulator/run_sink.h"
 #include "tsr/emulator/scene_pictures.h"
 #include "tsr/emulator/simulation.h"
-#include "tsr/emulator/sink_process.h"
 #include "tsr/host/atomic_file.h"
 #include "tsr/host/command_line.h"
 #include "tsr/host/input_error.h"
@@ -47,6 +48,7 @@ struct Options {
     tsr::PairOptions pair_options;
     std::vector<std::string> settings;
     std::optional<std::uint64_t> seed;
+    std::string baseline; /* empty: none */
     fs::path out;
     fs::path sink; /* tarsier-sink; beside this program by default */
     unsigned threads = std::max(1u, std::thread::hardware_concurrency());
@@ -66,6 +68,10 @@ void declare(CLI::App &app, Options &options)
         ->needs(pair)
         ->check(CLI::Range(16, 128));
     app.add_option("--seed", options.seed, "instead of the site's")->check(CLI::Range(kSeedMax));
+    app.add_option(
+           "--baseline", options.baseline,
+           "nodes send both views as JPEG instead of maps: \"changes\" of each change, \"stream\" once a minute")
+        ->check(CLI::IsMember({"changes", "stream"}));
     app.add_option("--out", options.out, "folder for the results")->required();
     app.add_option("--sink", options.sink, "the tarsier-sink program, by default the one beside this");
     app.add_option("--threads", options.threads, "that render a virtual scene, by default as many as the machine has")
@@ -201,14 +207,28 @@ void print_result(const fs::path &out, const nlohmann::ordered_json &summary)
             }
         }
     }
+    if (const auto &baseline = summary.at("baseline"); !baseline.is_null()) {
+        std::printf("a baseline: in the place of maps both views, as JPEG of quality %d\n",
+                    baseline.at("jpeg_quality").get<int>());
+    }
     std::printf("%.1f s of virtual time in %.1f s; results in %s, look at %s\n",
                 summary.at("virtual_time_s").get<double>(), summary.at("wall_time_s").get<double>(), out.c_str(),
                 (out / "index.html").c_str());
 }
 
-/* One site with its pictures, into the out folder. */
-int run_site(const Options &options, const tsr::Site &site, const tsr::KeyRing &keys, tsr::Pictures &pictures)
+std::optional<tsr::Baseline> chosen_baseline(const Options &options)
 {
+    if (options.baseline.empty()) {
+        return std::nullopt;
+    }
+    return tsr::Baseline{.stream = options.baseline == "stream"};
+}
+
+/* One site with its pictures, into the out folder. */
+int run_site(const Options &options, const tsr::Site &of_maps, const tsr::KeyRing &keys, tsr::Pictures &pictures)
+{
+    const std::optional<tsr::Baseline> baseline = chosen_baseline(options);
+    const tsr::Site site = baseline ? tsr::baseline_site(of_maps, *baseline) : of_maps;
     const auto start = std::chrono::steady_clock::now();
     tsr::OutFolder out(options.out);
     tsr::write_site(out.file("site.toml"), site);
@@ -216,9 +236,8 @@ int run_site(const Options &options, const tsr::Site &site, const tsr::KeyRing &
     tsr::write_keys(out.file("keys.toml"), keys);
 
     take_signals();
-    tsr::SinkProcess sink({options.sink, out.file("site.toml"), out.file("keys.toml"), out.file("sink.db"), out.path(),
-                           out.file("sink.log")});
-    tsr::Simulation simulation(site, keys, pictures, sink);
+    const auto sink = baseline ? tsr::start_jpeg_sink(keys, out) : tsr::start_map_sink(options.sink, site, out);
+    tsr::Simulation simulation(site, keys, pictures, sink->link(), baseline);
     tsr::PcapngCapture capture(out.file("capture.pcapng"));
     simulation.record_air(capture);
     ProgressBar progress(!options.quiet);
@@ -227,17 +246,18 @@ int run_site(const Options &options, const tsr::Site &site, const tsr::KeyRing &
         return stop_signal == 0;
     });
     progress.finish();
-    sink.finish();
+    sink->finish();
 
     capture.complete();
     tsr::RunRecord record =
-        tsr::gather(site, simulation, pictures, tsr::read_received_maps(site, simulation, pictures, out.path()),
-                    tsr::read_received_events(simulation, out.path()));
-    record.sink_restarts = sink.restarts();
+        tsr::gather(site, simulation, pictures, sink->maps(simulation, pictures), sink->events(simulation));
+    record.sink_restarts = sink->restarts();
     record.wall_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const auto summary = tsr::make_summary(record);
     const auto gallery = tsr::choose_maps(record);
-    tsr::write_truth_pictures(out.path(), gallery, pictures);
+    if (!baseline) {
+        tsr::write_truth_pictures(out.path(), gallery, pictures);
+    }
     tsr::write_tables(out.path(), record);
     tsr::write_page(out.path(), summary, record, gallery);
     tsr::write_file_atomically(out.file("summary.json"), summary.dump(2) + "\n");

@@ -13,7 +13,8 @@ function showHead() {
   $("title").textContent = summary.site;
   document.title = `Tarsier: ${summary.site}`;
   $("subtitle").textContent = `seed ${summary.seed}`;
-  const notices = [];
+  const notices = [], {baseline} = summary;
+  if (baseline) notices.push(`A baseline: nodes send both views as JPEG of quality ${baseline.jpeg_quality}, ${baseline.views === "stream" ? "once a minute" : "of each change"}. Where this page says map, read the two pictures.`);
   const planned = summary.virtual_time_s < DATA.played_s ? ` of ${number(DATA.played_s, 1)} s` : ", before all that was under way had ended";
   if (summary.stopped) notices.push(`A part of a run: stopped by a signal after ${number(summary.virtual_time_s, 1)} s${planned}. The results are those of the time until then.`);
   else if (!summary.settled) notices.push("Something was still under way when the run ended.");
@@ -38,7 +39,8 @@ function showTiles() {
     [bytes(totals.air_bytes), `on air in ${count(totals.air_frames, "frame")}${perMap}`],
     [errorPx.count > 0 ? `${number(errorPx.median, 2)} px` : "–", errorPx.count > 0 ?
       `median error of ${count(errorPx.count, "map")}, ${short(errorMm.median)} mm; ${number(100 * totals.correct_median)} % of the pixels right within 1 px` : "error: no ground truth"],
-    [`${short(totals.energy_mj / 1000)} J`, `by all nodes, ${short(totals.energy_mj / summary.virtual_time_s / DATA.nodes.of)} mW each on average`],
+    [`${short(totals.energy_mj / 1000)} J`, `by all nodes, ${short(totals.energy_mj / summary.virtual_time_s / DATA.nodes.of)} mW each on average` +
+      (totals.active_mj_per_map > 0 ? `; for each map delivered ${short(totals.active_mj_per_map)} mJ more than idle` : "")],
     [unended ? "no end" : `${number(totals.shortest_life_days, totals.shortest_life_days < 10 ? 1 : 0)} <small>days</small>`,
       `of battery, the shortest: ${escape(nameOf(totals.shortest_life_node))}; median ${days(totals.median_life_days)}`],
   ];

@@ -12,6 +12,7 @@
 
 extern "C" {
 #include "tsr/node/node_state.h"
+#include "tsr/node/substitute.h"
 }
 #include "tsr/host/aes.h"
 #include "tsr/host/input_error.h"
@@ -29,6 +30,7 @@ const tsr_entropy_ops *entropy_ops(void (*fill)(void *, std::uint8_t *, std::siz
     return &ops;
 }
 
+constexpr std::uint64_t kCodingQuantumUs = 3'000; /* as long as four rows of matching: the radio is served in between */
 constexpr std::uint64_t kUnknownRam = 0xa5a5a5a5a5a5a5a5u; /* what RAM holds at power-on is anything */
 
 /* Counters are 32-bit fields and nothing else, so they add up as words. */
@@ -146,6 +148,7 @@ void EmulatedNode::power_off()
     past_sender_counters_ = sender_counters();
     const std::uint64_t now_us = around_.queue.now_us();
     cpu_busy_us_ -= busy_until_us_ > now_us ? busy_until_us_ - now_us : 0; /* the rest of a step is not done */
+    coding_left_us_ = 0;
     busy_until_us_ = 0;
     step_at_us_ = timer_at_us_ = UINT64_MAX;
     around_.air.set_power(radio_, false);
@@ -238,20 +241,54 @@ void EmulatedNode::schedule_step(std::uint64_t time_us)
     });
 }
 
+/* A baseline node's views go to its own coder. */
+void EmulatedNode::take_views()
+{
+    if (around_.baseline->stream) {
+        tsr_node_wake_next(node_.get());
+    }
+    tsr_gray_view left{};
+    tsr_gray_view right{};
+    if (tsr_node_take_pair(node_.get(), &left, &right)) {
+        views_ = tsr::code_views(*around_.baseline, left, right);
+        coding_left_us_ = instructions_time_us(around_.power, views_.instructions);
+    }
+}
+
+/* A part of the coding; returns how long it took. */
+std::uint64_t EmulatedNode::code_views(std::uint64_t most_us)
+{
+    const std::uint64_t took_us = std::min(coding_left_us_, most_us);
+    coding_left_us_ -= took_us;
+    if (took_us > 0 && coding_left_us_ == 0) {
+        tsr_node_send_pair(node_.get(), views_.left.data(), views_.left.size(), views_.right.data(),
+                           views_.right.size(), local_us());
+    }
+    return took_us;
+}
+
 void EmulatedNode::step()
 {
     const std::uint64_t now_us = around_.queue.now_us();
-    const tsr_node_outcome outcome = tsr_node_step(node_.get(), local_us());
-    note_phase(tsr_node_get_phase(node_.get()));
-    if (outcome.work != TSR_WORK_NONE) {
-        const std::uint64_t took_us = work_time_us(around_.power, outcome.work, outcome.units);
-        work_units_.at(outcome.work) += outcome.units;
-        cpu_busy_us_ += took_us;
-        busy_until_us_ = now_us + took_us;
+    if (around_.baseline != nullptr) {
+        take_views();
     }
+    const tsr_node_outcome outcome = tsr_node_step(node_.get(), local_us());
+    std::uint64_t took_us = 0;
+    if (outcome.work != TSR_WORK_NONE) {
+        took_us = work_time_us(around_.power, outcome.work, outcome.units);
+        work_units_.at(outcome.work) += outcome.units;
+        cpu_watching_us_ += outcome.work == TSR_WORK_CHANGE ? took_us : 0;
+    } else {
+        took_us = code_views(kCodingQuantumUs);
+    }
+    note_phase(tsr_node_get_phase(node_.get()));
+    cpu_busy_us_ += took_us;
+    busy_until_us_ = took_us > 0 ? now_us + took_us : busy_until_us_;
     serve_mac();
-    if (outcome.wake_us != UINT64_MAX) {
-        schedule_step(outcome.wake_us);
+    const std::uint64_t wake_us = took_us > 0 ? local_us() : outcome.wake_us;
+    if (wake_us != UINT64_MAX) {
+        schedule_step(wake_us);
     }
 }
 
@@ -271,8 +308,9 @@ bool EmulatedNode::at_rest() const
         return true;
     }
     /* What a lost capture, view or map has shown is still owed: the next frame is captured again. */
-    const bool owes_map =
-        node_->recapture && (node_->config.role == TSR_ROLE_LEAD || node_->config.role == TSR_ROLE_BINOCULAR);
+    const bool streams = around_.baseline != nullptr && around_.baseline->stream;
+    const bool owes_map = node_->recapture && !streams &&
+                          (node_->config.role == TSR_ROLE_LEAD || node_->config.role == TSR_ROLE_BINOCULAR);
     return phase() <= TSR_PHASE_WATCHING && !owes_map && tsr_node_is_quiet(node_.get());
 }
 
@@ -296,7 +334,7 @@ tsr_sender_counters EmulatedNode::sender_counters() const
     return powered() ? sum(past_sender_counters_, *tsr_node_get_sender_counters(node_.get())) : past_sender_counters_;
 }
 
-EnergyMj EmulatedNode::energy() const
+NodeTimes EmulatedNode::times() const
 {
     NodeTimes times;
     times.radio = around_.air.times(radio_);
@@ -308,7 +346,17 @@ EnergyMj EmulatedNode::energy() const
     }
     times.exposure_us = SourceCamera::kExposureUs;
     times.readout_us = SourceCamera::kReadoutUs;
-    return energy_of(around_.power, times);
+    return times;
+}
+
+EnergyMj EmulatedNode::energy() const
+{
+    return energy_of(around_.power, times());
+}
+
+double EmulatedNode::active_mj(std::uint64_t heard_us) const
+{
+    return tsr::active_mj(around_.power, times(), {heard_us, cpu_watching_us_, counters().frames_watched});
 }
 
 } // namespace tsr

@@ -23,7 +23,12 @@ double instructions_per_unit(tsr_work_kind kind)
 
 std::uint64_t work_time_us(const PowerModel &model, tsr_work_kind kind, std::uint32_t units)
 {
-    const double cycles = instructions_per_unit(kind) * units * model.cycles_per_instruction;
+    return instructions_time_us(model, instructions_per_unit(kind) * units);
+}
+
+std::uint64_t instructions_time_us(const PowerModel &model, double instructions)
+{
+    const double cycles = instructions * model.cycles_per_instruction;
     return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(cycles / model.cpu_mhz));
 }
 
@@ -84,6 +89,17 @@ EnergyMj energy_of(const PowerModel &model, const NodeTimes &times)
         drawn(model.storage_standby_ma, rest_of(times.total_us, times.storage_writing_us + times.storage_reading_us));
     energy.board = drawn(model.board_ma, times.total_us);
     return energy;
+}
+
+double active_mj(const PowerModel &model, const NodeTimes &times, const IdleTimes &idle)
+{
+    NodeTimes active = times;
+    active.radio.receiving = std::min(times.radio.receiving, idle.heard_us);
+    active.cpu_busy_us = rest_of(times.cpu_busy_us, idle.cpu_watching_us);
+    active.captures = rest_of(times.captures, idle.captures_watching);
+    const EnergyMj energy = energy_of(model, active);
+    return energy.radio.transmit + energy.radio.assess + energy.radio.acknowledge + energy.radio.receive +
+           energy.cpu.run + energy.camera.start + energy.camera.expose + energy.camera.read;
 }
 
 } // namespace tsr

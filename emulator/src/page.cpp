@@ -11,10 +11,12 @@
  *   phases    [[s, node, phase], ...] of work; empty if there are many
  *   messages  {of, rows: [[s, node, kind], ...]}: committed ones that are no maps
  *   events    [[s, what], ...] that the scene tells
- *   gallery   [{pair, why, numbers, reference, map, truth, error}, ...]: numbers as in summary.json, PNG data URLs or
- * "" gallery_of  how many were chosen: the last ones may not fit cloud     {of, count, low, step, positions, colours}:
- * base64 of count x 3 uint16 and count x 3 bytes; position = low + step * value, m last_pair_share  of the cloud's
- * points, those of the last pair: they are the last
+ *   gallery   [{pair, why, numbers, left, right, reference, map, truth, error}, ...]: numbers as in summary.json, data
+ *             URLs or ""; left and right are a baseline's
+ *   gallery_of  how many were chosen: the last ones may not fit
+ *   cloud     {of, count, low, step, positions, colours}: base64 of count x 3 uint16 and count x 3 bytes;
+ *             position = low + step * value, m
+ *   last_pair_share  of the cloud's points, those of the last pair: they are the last
  *
  * Lists are thinned evenly to what the limits below say, so that the page stays below 5 MB whatever was run;
  * summary.json and the CSV tables have everything.
@@ -158,9 +160,10 @@ Json events_json(const RunRecord &run)
     });
 }
 
-std::string png_url(const std::filesystem::path &file)
+std::string picture_url(const std::filesystem::path &file)
 {
-    return std::filesystem::exists(file) ? "data:image/png;base64," + base64(read_file(file)) : std::string();
+    const std::string type = file.extension() == ".jpg" ? "jpeg" : "png";
+    return std::filesystem::exists(file) ? "data:image/" + type + ";base64," + base64(read_file(file)) : std::string();
 }
 
 /* As many as fit, in the order of the choice. */
@@ -173,11 +176,13 @@ Json gallery_json(const std::filesystem::path &out, const std::vector<GalleryMap
         Json entry{{"pair", shown.pair != nullptr ? shown.pair->name : ""},
                    {"why", shown.why},
                    {"numbers", json_of(*shown.map)},
-                   {"reference", png_url(file + "-reference.png")},
-                   {"map", png_url(file + ".png")},
-                   {"truth", png_url(file + "-truth.png")},
-                   {"error", png_url(file + "-error.png")}};
-        for (const char *key : {"reference", "map", "truth", "error"}) {
+                   {"left", picture_url(file + "-left.jpg")},
+                   {"right", picture_url(file + "-right.jpg")},
+                   {"reference", picture_url(file + "-reference.png")},
+                   {"map", picture_url(file + ".png")},
+                   {"truth", picture_url(file + "-truth.png")},
+                   {"error", picture_url(file + "-error.png")}};
+        for (const char *key : {"left", "right", "reference", "map", "truth", "error"}) {
             bytes += entry.at(key).get_ref<const std::string &>().size();
         }
         if (bytes > kGalleryBytesMax) {

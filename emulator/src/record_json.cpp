@@ -160,6 +160,7 @@ Json json_of(const NodeRecord &node)
             {"air", {{"frames", node.air.frames}, {"bytes", node.air.bytes}, {"lost", node.air.lost}}},
             {"dropped", drops_json(counters, node.mac)},
             {"energy_mj", energy_json(node.energy)},
+            {"active_mj", rounded(node.active_mj, 3)},
             {"battery", battery_json(node)},
             {"work", work_json(node)},
             {"memory_bytes", node.arena_len}};
@@ -198,7 +199,7 @@ Json json_of(const ReceivedMap &map)
               {"kept", map.kept},
               {"map_bytes", map.map_bytes},
               {"reference_bytes", map.reference_bytes},
-              {"file", map.file + ".pfm"}};
+              {"file", map.file + map.ending}};
     if (map.error) {
         json["error"] = error_json(*map.error);
     }

@@ -14,6 +14,10 @@ namespace tsr
 namespace
 {
 
+/* IEEE 802.15.4-2020, 12.1: preamble, SFD and PHR before the PSDU; 250 kbit/s. */
+constexpr std::uint64_t kPhyHeaderLen = 6;
+constexpr std::uint64_t kOctetUs = 32;
+
 int hops_of(const Site &site, const SiteNode &node)
 {
     int hops = 0;
@@ -21,6 +25,17 @@ int hops_of(const Site &site, const SiteNode &node)
         ++hops;
     }
     return hops;
+}
+
+/* How long each node received what was for it. */
+std::map<std::uint16_t, std::uint64_t> times_heard_us(const Traffic &traffic)
+{
+    std::map<std::uint16_t, std::uint64_t> times;
+    for (const auto &[ends, tally] : traffic.links()) {
+        const FrameTally data = tally.data();
+        times[ends.second] += (data.bytes + data.frames * kPhyHeaderLen) * kOctetUs;
+    }
+    return times;
 }
 
 std::vector<NodeRecord> gather_nodes(const Site &site, const Simulation &simulation,
@@ -37,6 +52,7 @@ std::vector<NodeRecord> gather_nodes(const Site &site, const Simulation &simulat
             pairs[pair.wing] = &pair;
         }
     }
+    auto heard_us = times_heard_us(simulation.traffic());
     const double duration_us = static_cast<double>(simulation.duration_us());
     std::vector<NodeRecord> nodes;
     for (std::size_t i = 0; i < simulation.nodes().size(); ++i) {
@@ -51,6 +67,7 @@ std::vector<NodeRecord> gather_nodes(const Site &site, const Simulation &simulat
         record.sender = node.sender_counters();
         record.air = simulation.air_tally(i);
         record.energy = node.energy();
+        record.active_mj = node.active_mj(heard_us[node.id()]);
         record.mean_uw = duration_us > 0 ? record.energy.total() / duration_us * 1e9 : 0;
         record.life = battery_life(site.battery, record.mean_uw);
         record.work_units = node.work_units();
@@ -201,6 +218,14 @@ void digest_maps(RunDigest &digest, const std::vector<ReceivedMap> &maps)
     digest.correct = median_of(correct);
 }
 
+void digest_energy(RunDigest &digest, const std::vector<NodeRecord> &nodes, std::size_t maps)
+{
+    for (const NodeRecord &node : nodes) {
+        digest.active_mj += node.active_mj;
+    }
+    digest.active_mj_per_map = maps > 0 ? digest.active_mj / static_cast<double>(maps) : 0;
+}
+
 void digest_lives(RunDigest &digest, const std::vector<NodeRecord> &nodes)
 {
     std::vector<double> lives;
@@ -287,6 +312,7 @@ RunRecord gather(const Site &site, const Simulation &simulation, const Pictures 
     record.episodes = gather_episodes(simulation, record.nodes);
     record.events = pictures.events();
     digest_maps(record.digest, record.maps);
+    digest_energy(record.digest, record.nodes, record.maps.size());
     digest_lives(record.digest, record.nodes);
     digest_traffic(record.digest, record.links);
     return record;

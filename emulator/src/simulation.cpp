@@ -34,15 +34,16 @@ AirModel air_model(const Site &site)
 
 const tsr_port_ops Simulation::kPortOps = {&Simulation::write_port};
 
-Simulation::Simulation(const Site &site, const KeyRing &keys, Pictures &pictures, SinkLink &sink)
-    : site_(site), pictures_(pictures), sink_(sink), traffic_(site, keys)
+Simulation::Simulation(const Site &site, const KeyRing &keys, Pictures &pictures, SinkLink &sink,
+                       std::optional<Baseline> baseline)
+    : site_(site), pictures_(pictures), sink_(sink), baseline_(baseline), traffic_(site, keys)
 {
     Air::Clock clock;
     clock.now_us = [this] { return queue_.now_us(); };
     clock.at = [this](std::uint64_t time_us, std::function<void()> action) { queue_.at(time_us, std::move(action)); };
     air_ = std::make_unique<Air>(air_model(site_), std::move(clock));
     for (const SiteNode &node : site_.nodes) {
-        EmulatedNode::Surroundings around{queue_, *air_, power_, pictures_, site_.seed, {}, {}};
+        EmulatedNode::Surroundings around{queue_, *air_, power_, pictures_, site_.seed, baseline_ ? &*baseline_ : nullptr, {}, {}};
         if (node.role == Role::gateway) {
             around.port = {&kPortOps, this};
         }

@@ -72,6 +72,9 @@ Json totals_json(const RunRecord &run, const Json &nodes)
     totals["air_frames"] = air.frames;
     totals["air_bytes"] = air.bytes;
     totals["energy_mj"] = rounded(energy_mj, 3);
+    totals["active_mj"] = rounded(run.digest.active_mj, 3);
+    totals["active_mj_per_map"] =
+        run.digest.active_mj_per_map > 0 ? Json(rounded(run.digest.active_mj_per_map, 4)) : Json();
     totals["latency_s"] = quantiles_json(run.digest.latency_s, 6);
     totals["median_error_px"] = quantiles_json(run.digest.error_px, 4);
     totals["median_error_mm"] = quantiles_json(run.digest.error_mm, 2);
@@ -108,6 +111,14 @@ Json pairs_json(const RunRecord &run, const Json &nodes)
     return pairs;
 }
 
+Json baseline_json(const std::optional<Baseline> &baseline)
+{
+    if (!baseline) {
+        return {};
+    }
+    return {{"views", baseline->stream ? "stream" : "changes"}, {"jpeg_quality", baseline->quality}};
+}
+
 template <typename Records> Json array_of(const Records &records)
 {
     Json json = Json::array();
@@ -126,6 +137,7 @@ Json make_summary(const RunRecord &run)
     return {{"format", kSummaryFormat},
             {"site", site.name},
             {"seed", site.seed},
+            {"baseline", baseline_json(run.simulation->baseline())},
             {"virtual_time_s", rounded(static_cast<double>(run.simulation->duration_us()) / 1e6, 6)},
             {"stopped", run.simulation->stopped()},
             {"settled", run.simulation->quiet()},

@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "tsr/emulator/baseline.h"
 #include "tsr/emulator/energy.h"
 #include "tsr/emulator/event_queue.h"
 #include "tsr/emulator/node_clock.h"
@@ -49,6 +50,7 @@ class EmulatedNode
         const PowerModel &power;
         Pictures &pictures;
         std::uint64_t seed;
+        const Baseline *baseline;                               /* kept; null: nodes that send maps */
         tsr_port port;                                          /* of a gateway */
         std::function<void(const PhaseChange &)> phase_changed; /* may be empty */
     };
@@ -85,6 +87,8 @@ class EmulatedNode
     /* Instructions done, by kind of work. */
     const std::array<std::uint64_t, TSR_WORK_COUNT> &work_units() const { return work_units_; }
     EnergyMj energy() const; /* from power-on until now */
+    /* What would not have been spent if nothing had changed, mJ; heard_us: time on air of frames sent to this node. */
+    double active_mj(std::uint64_t heard_us) const;
 
   private:
     void add_camera(bool right);
@@ -94,6 +98,9 @@ class EmulatedNode
     void attend();
     void schedule_step(std::uint64_t time_us);
     void step();
+    void take_views();
+    std::uint64_t code_views(std::uint64_t most_us);
+    NodeTimes times() const;
     void serve_mac();
     void note_phase(tsr_node_phase phase);
     static void fill_entropy(void *self, std::uint8_t *bytes, std::size_t len);
@@ -118,6 +125,9 @@ class EmulatedNode
     std::uint64_t step_at_us_ = UINT64_MAX;  /* the step that is scheduled */
     std::uint64_t timer_at_us_ = UINT64_MAX; /* the MAC timer that is scheduled */
     std::uint64_t cpu_busy_us_ = 0;
+    std::uint64_t cpu_watching_us_ = 0; /* of that, comparing frames with the background */
+    CodedViews views_;                  /* of a baseline node, being coded */
+    std::uint64_t coding_left_us_ = 0;
     std::array<std::uint64_t, TSR_WORK_COUNT> work_units_{};
     tsr_node_phase phase_ = TSR_PHASE_IDLE;
 };

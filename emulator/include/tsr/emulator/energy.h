@@ -88,9 +88,21 @@ double instructions_per_unit(tsr_work_kind kind);
 
 /* Time the processor takes for work, whole microseconds, at least 1. */
 std::uint64_t work_time_us(const PowerModel &model, tsr_work_kind kind, std::uint32_t units);
+std::uint64_t instructions_time_us(const PowerModel &model, double instructions);
 
 /* A part's standby or sleep is what its other states leave of total_us, at least nothing. */
 EnergyMj energy_of(const PowerModel &model, const NodeTimes &times);
+
+/* What a node does whatever happens, or that NodeTimes does not tell. */
+struct IdleTimes {
+    std::uint64_t heard_us = 0;        /* on air of frames to this node: received for a reason, not in idle listening */
+    std::uint64_t cpu_watching_us = 0; /* comparing frames with the background */
+    std::uint64_t captures_watching = 0;
+};
+
+/* mJ that changes have cost: frames sent, heard and acknowledged, captures of woken pairs, and the processor but for
+ * watching. Idle listening, watching, standby and sleep are not in it. docs/energy.md, eq. (3) */
+double active_mj(const PowerModel &model, const NodeTimes &times, const IdleTimes &idle);
 
 } // namespace tsr
 

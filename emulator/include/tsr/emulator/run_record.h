@@ -37,6 +37,7 @@ struct ReceivedMap {
     std::size_t map_bytes = 0;
     std::size_t reference_bytes = 0;
     std::string file;              /* below the out folder, without ending */
+    std::string ending = ".pfm";   /* of the file of numbers; of a baseline's, of its left picture */
     std::optional<MapError> error; /* where there is ground truth */
 
     std::optional<double> latency_s() const; /* from capture to commit */
@@ -64,6 +65,7 @@ struct NodeRecord {
     tsr_sender_counters sender{};
     AirTally air;
     EnergyMj energy;
+    double active_mj = 0; /* of that, what changes have cost */
     double mean_uw = 0;
     BatteryLife life;
     std::array<std::uint64_t, TSR_WORK_COUNT> work_units{};
@@ -112,6 +114,8 @@ struct RunDigest { /* what one looks at first */
     Quantiles error_px; /* over maps, of each map's median error */
     Quantiles error_mm;
     double correct = 0;                      /* median over maps of the part within 1 px */
+    double active_mj = 0;                    /* of all nodes */
+    double active_mj_per_map = 0;            /* for each map the sink has; 0 without any */
     std::uint16_t shortest_life = kNodeNone; /* a node with a battery that will be empty first; not the gateway */
     double shortest_life_days = 0;
     double median_life_days = 0; /* but for the gateway; infinite if most have no end */

@@ -11,6 +11,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "tsr/emulator/emulated_node.h"
@@ -47,7 +48,8 @@ class Simulation
     static constexpr std::size_t kWatchingNotedMax = 20'000;
 
     /* All are kept. Throws InputError for recordings or configurations that cannot be run. */
-    Simulation(const Site &site, const KeyRing &keys, Pictures &pictures, SinkLink &sink);
+    Simulation(const Site &site, const KeyRing &keys, Pictures &pictures, SinkLink &sink,
+               std::optional<Baseline> baseline = {});
     ~Simulation();
     Simulation(const Simulation &) = delete;
     Simulation &operator=(const Simulation &) = delete;
@@ -61,6 +63,7 @@ class Simulation
     std::uint64_t played_us() const { return played_us_; }
     /* Progress has ended the run before that. */
     bool stopped() const { return stopped_; }
+    const std::optional<Baseline> &baseline() const { return baseline_; }
     const std::vector<std::unique_ptr<EmulatedNode>> &nodes() const { return nodes_; }
     const std::vector<PhaseChange> &timeline() const { return timeline_; }
     /* Frames watched by all nodes in each second. */
@@ -82,6 +85,7 @@ class Simulation
     const Site &site_;
     Pictures &pictures_;
     SinkLink &sink_;
+    std::optional<Baseline> baseline_; /* nothing: nodes send maps */
     PowerModel power_;
     EventQueue queue_;
     std::unique_ptr<Air> air_;

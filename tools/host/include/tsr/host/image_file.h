@@ -1,5 +1,5 @@
 /*
- * Image files: PGM, PNG and JPEG in, PGM and PNG out.
+ * Image files: PGM, PNG and JPEG in and out.
  *
  * The format is told by the file's first bytes, never by its name. Colour
  * becomes gray by ITU-R BT.601 luma on the stored (gamma-coded) values,
@@ -83,6 +83,9 @@ void write_pgm(const std::filesystem::path &file, tsr_gray_view image);
 void write_png(const std::filesystem::path &file, tsr_gray_view image);
 void write_png(const std::filesystem::path &file, const GrayImage16 &image);
 void write_png(const std::filesystem::path &file, const RgbImage &image);
+/* A whole JFIF file: baseline, integer DCT (JDCT_ISLOW), the usual Huffman tables; quality 1 .. 100 as libjpeg counts.
+ */
+std::vector<std::uint8_t> encode_jpeg(tsr_gray_view image, int quality);
 
 } // namespace tsr
 

@@ -1,0 +1,196 @@
+/* The sink of baseline nodes. SPDX-License-Identifier: Apache-2.0 */
+#include "tsr/emulator/jpeg_sink.h"
+
+#include <array>
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+
+#include "tsr/host/aes.h"
+#include "tsr/host/atomic_file.h"
+#include "tsr/host/image_file.h"
+#include "tsr/host/input_error.h"
+
+extern "C" {
+#include "tsr/base/bytes.h"
+#include "tsr/wire/address.h"
+}
+
+namespace tsr
+{
+
+namespace
+{
+
+/* The ANSWER that carries one fragment or none. */
+std::vector<std::uint8_t> answer_to(std::uint16_t sequence, const std::vector<std::uint8_t> &fragment)
+{
+    std::vector<std::uint8_t> body;
+    if (!fragment.empty()) {
+        body.push_back(static_cast<std::uint8_t>(fragment.size()));
+        body.insert(body.end(), fragment.begin(), fragment.end());
+    }
+    const tsr_link_frame frame{TSR_LINK_ANSWER, sequence, body.data(), body.size()};
+    std::vector<std::uint8_t> bytes(TSR_LINK_FRAME_MAX);
+    std::size_t len = 0;
+    if (tsr_link_encode(&frame, bytes.data(), bytes.size(), &len) != TSR_OK) {
+        throw std::logic_error("JpegSink: an ANSWER does not fit its frame");
+    }
+    bytes.resize(len);
+    return bytes;
+}
+
+std::string name_of(const tsr_message_header &header)
+{
+    std::array<char, 32> name{};
+    std::snprintf(name.data(), name.size(), "%05u-%010u", unsigned{header.origin}, header.counter);
+    return name.data();
+}
+
+} // namespace
+
+JpegSink::JpegSink(const KeyRing &keys, std::filesystem::path folder) : folder_(std::move(folder))
+{
+    std::error_code error;
+    std::filesystem::create_directories(folder_, error);
+    if (error) {
+        throw InputError(folder_.string(), "create", error.message());
+    }
+    tsr_link_decoder_init(&decoder_);
+    for (const auto &[node, key] : keys.node_keys) {
+        if (tsr_cipher_init(&origins_[node].cipher, &mbedtls_aes_ops(), key.data()) != TSR_OK) {
+            throw std::runtime_error("Mbed TLS cannot expand a key");
+        }
+    }
+}
+
+std::vector<std::uint8_t> JpegSink::exchange(const std::uint8_t *frame, std::size_t len)
+{
+    for (std::size_t i = 0; i < len; ++i) {
+        tsr_link_frame request{};
+        if (tsr_link_decode(&decoder_, frame[i], &request) != TSR_OK) {
+            continue;
+        }
+        if (request.type != TSR_LINK_UPLINK || request.body_len < TSR_LINK_UPLINK_HEADER_LEN) {
+            return answer_to(request.sequence, {});
+        }
+        return answer_to(request.sequence, take_fragment(request.body + TSR_LINK_UPLINK_HEADER_LEN,
+                                                         request.body_len - TSR_LINK_UPLINK_HEADER_LEN));
+    }
+    return {};
+}
+
+/* What was acknowledged is in files; what was being put together is not. */
+void JpegSink::restart()
+{
+    ++restarts_;
+    tsr_link_decoder_init(&decoder_);
+    for (auto &[node, origin] : origins_) {
+        origin.assembly.count = 0;
+    }
+}
+
+/* The fragment to send down, or nothing. */
+std::vector<std::uint8_t> JpegSink::take_fragment(const std::uint8_t *bytes, std::size_t len)
+{
+    tsr_fragment fragment{};
+    if (tsr_fragment_read(bytes, len, &fragment) != TSR_OK || fragment.destination != TSR_ADDRESS_SINK) {
+        return {};
+    }
+    const auto found = origins_.find(fragment.origin);
+    if (found == origins_.end()) {
+        return {};
+    }
+    Origin &origin = found->second;
+    if (origin.has_finished && origin.finished_id == fragment.message_id) {
+        if (!fragment.poll) {
+            return {};
+        }
+    } else {
+        if (!tsr_reassembly_matches(&origin.assembly, &fragment)) {
+            origin.message.assign(std::size_t{fragment.count} * TSR_FRAGMENT_PIECE_MAX, 0);
+            tsr_reassembly_init(&origin.assembly, origin.message.data(), origin.message.size());
+            tsr_reassembly_begin(&origin.assembly, &fragment);
+        }
+        const tsr_status added = tsr_reassembly_add(&origin.assembly, &fragment);
+        if (added != TSR_OK && (added != TSR_AGAIN || !fragment.poll)) {
+            return {};
+        }
+    }
+    return seal(origin, fragment.origin, judge(origin, fragment));
+}
+
+/* The answer to a poll, or to the fragment that completes a message. */
+tsr_body_status JpegSink::judge(Origin &origin, const tsr_fragment &fragment)
+{
+    tsr_body_status status{};
+    status.message_id = fragment.message_id;
+    if (!origin.has_finished || origin.finished_id != fragment.message_id) {
+        const tsr_reassembly &whole = origin.assembly;
+        if (!tsr_reassembly_complete(&whole)) {
+            return tsr_body_status_of(&whole, TSR_DELIVERY_COMMITTED);
+        }
+        tsr_message_header header{};
+        std::size_t body_len = 0;
+        if (tsr_message_parse(whole.message, whole.message_len, whole.origin, whole.destination, &header) != TSR_OK ||
+            tsr_message_open(&header, &origin.cipher, whole.message, whole.message_len, &body_len) != TSR_OK) {
+            tsr_reassembly_begin(&origin.assembly, &fragment); /* from the start */
+            return tsr_body_status_of(&origin.assembly, TSR_DELIVERY_COMMITTED);
+        }
+        origin.finished_as = keep(header, {whole.message + TSR_MESSAGE_HEADER_LEN, body_len});
+        origin.finished_id = fragment.message_id;
+        origin.has_finished = true;
+        origin.assembly.count = 0;
+    }
+    status.state = static_cast<std::uint8_t>(origin.finished_as);
+    return status;
+}
+
+tsr_delivery JpegSink::keep(const tsr_message_header &header, std::span<const std::uint8_t> body)
+{
+    tsr_body_map parts{};
+    if (header.kind != TSR_MESSAGE_MAP || tsr_body_read_map(body.data(), body.size(), &parts) != TSR_OK) {
+        return TSR_DELIVERY_REFUSED;
+    }
+    const std::span left(parts.reference, parts.reference_len);
+    const std::span right(parts.map, parts.map_len);
+    const std::string name = name_of(header);
+    try {
+        decode_gray_image(left, name + "-left.jpg");
+        decode_gray_image(right, name + "-right.jpg");
+    } catch (const InputError &) {
+        return TSR_DELIVERY_REFUSED;
+    }
+    write_file_atomically(folder_ / (name + "-left.jpg"), left);
+    write_file_atomically(folder_ / (name + "-right.jpg"), right);
+    received_.push_back({header.origin, header.counter, parts.capture_time_us, left.size(), right.size(), name});
+    return TSR_DELIVERY_COMMITTED;
+}
+
+std::vector<std::uint8_t> JpegSink::seal(const Origin &origin, std::uint16_t node, const tsr_body_status &status)
+{
+    std::array<std::uint8_t, TSR_BODY_STATUS_MAX + TSR_MESSAGE_OVERHEAD_LEN> message{};
+    std::size_t body_len = 0;
+    std::size_t message_len = 0;
+    const tsr_message_header header{TSR_MESSAGE_STATUS, TSR_KEY_NODE, TSR_ADDRESS_SINK, node, ++counter_};
+    std::vector<std::uint8_t> bytes(TSR_FRAME_PAYLOAD_MAX);
+    std::size_t len = 0;
+    bool sealed =
+        tsr_body_write_status(&status, message.data() + TSR_MESSAGE_HEADER_LEN, TSR_BODY_STATUS_MAX, &body_len) ==
+            TSR_OK &&
+        tsr_message_seal(&header, &origin.cipher, message.data(), message.size(), body_len, &message_len) == TSR_OK;
+    if (sealed) {
+        tsr_fragment fragment = tsr_fragment_of(message.data(), message_len, 0);
+        fragment.origin = TSR_ADDRESS_SINK;
+        fragment.destination = node;
+        fragment.message_id = static_cast<std::uint16_t>(header.counter);
+        sealed = tsr_fragment_write(&fragment, bytes.data(), bytes.size(), &len) == TSR_OK;
+    }
+    if (!sealed) {
+        throw std::logic_error("JpegSink: a STATUS does not fit one fragment");
+    }
+    bytes.resize(len);
+    return bytes;
+}
+
+} // namespace tsr
