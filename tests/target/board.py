@@ -21,6 +21,7 @@ M55 = "mps3-an547"
 BOARD_BUILD = SOURCE / "build" / DEFAULT
 UNITY = pathlib.Path(os.environ.get("UNITY_DIR") or SOURCE / ".deps/unity")
 MBEDTLS = pathlib.Path(os.environ.get("MBEDTLS_DIR") or SOURCE / ".deps/mbedtls")
+LIBJPEG = pathlib.Path(os.environ.get("LIBJPEG_DIR") or SOURCE / ".deps/libjpeg-turbo")
 TOOLS = ("cmake", "ninja", "arm-none-eabi-gcc", "arm-none-eabi-nm", "qemu-system-arm", "cc")
 EXIT_SKIPPED = 77
 WORKBENCH = ("workbench.c", "refinements.c", "codecs.c", "rectify.c", "seals.c")
@@ -54,6 +55,11 @@ def need_tools(*more):
             raise Missing(f"{tool} is not installed")
     if not (MBEDTLS / "library/aes.c").exists():
         raise Missing(f"no Mbed TLS sources in {MBEDTLS}; run tools/setup test")
+
+
+def need_libjpeg():
+    if not (LIBJPEG / "jchuff.c").exists():
+        raise Missing(f"no libjpeg-turbo sources in {LIBJPEG}; run tools/setup test")
 
 
 def run(words, timeout_s=300, cwd=None):
