@@ -4,6 +4,9 @@ Instructions, not cycles: QEMU models no pipeline, no flash wait states and no c
 
 SPDX-License-Identifier: Apache-2.0
 """
+import sys
+
+import jpeg_work
 import work_table
 
 HOW = "mean over the kind's measurements on the Aloe pair at 160x120 and 320x240, between two markers"
@@ -28,4 +31,12 @@ def bench():
                         "how": "all instructions from start to last row; target: the hand-scheduled prototype"})
     details = {name: {work: {"units": units, "instructions": count, "per_unit": round(count / units, 3)}
                       for work, units, count in rows} for name, _, rows in measured}
+    try:
+        jpeg = jpeg_work.measure(with_data=True)
+    except work_table.board.Missing as missing:
+        print(f"tools/bench work: jpeg left out: {missing}", file=sys.stderr)
+        return {"targets": targets, "details": details}
+    targets += jpeg_work.targets(jpeg)
+    for name, views in jpeg.items():
+        details[name] |= views
     return {"targets": targets, "details": details}

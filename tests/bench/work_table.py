@@ -32,18 +32,26 @@ KINDS = {
 }
 
 
+def cases(work, with_data):
+    """Aloe in both sizes, and TSR_DATA's pairs if asked, below the folder work."""
+    return pictures.aloe_cases(work) + (pictures.data_cases(work) if with_data else [])
+
+
+def count(name, image, shape, folder, machine=board.DEFAULT):
+    """[(work, units, instructions)] of one case, by a counter that counts."""
+    rows = board.count_work(image, shape, folder, machine=machine)
+    counts = {work: instructions for work, _, instructions in rows if work in CALIBRATION_TURNS}
+    if counts["calibration_2000"] - counts["calibration_1000"] != 1000:
+        raise board.BoardError(f"{name}: the counter does not count: {counts}")
+    return rows
+
+
 def measure(with_data=False, machine=board.DEFAULT):
     """[(case, shape, [(work, units, instructions)])] of Aloe in both sizes, and of TSR_DATA's pairs if asked."""
     image = board.build("tarsier-workbench", machine=machine) / "tarsier-workbench.elf"
     with tempfile.TemporaryDirectory() as work:
-        cases = pictures.aloe_cases(work) + (pictures.data_cases(work) if with_data else [])
-        found = [(name, shape, board.count_work(image, shape, folder, machine=machine))
-                 for name, folder, shape in cases]
-    for name, _, rows in found:
-        counts = {work: count for work, _, count in rows if work in CALIBRATION_TURNS}
-        if counts["calibration_2000"] - counts["calibration_1000"] != 1000:
-            raise board.BoardError(f"{name}: the counter does not count: {counts}")
-    return found
+        return [(name, shape, count(name, image, shape, folder, machine))
+                for name, folder, shape in cases(work, with_data)]
 
 
 def per_unit(rows):

@@ -21,8 +21,10 @@ M55 = "mps3-an547"
 BOARD_BUILD = SOURCE / "build" / DEFAULT
 UNITY = pathlib.Path(os.environ.get("UNITY_DIR") or SOURCE / ".deps/unity")
 MBEDTLS = pathlib.Path(os.environ.get("MBEDTLS_DIR") or SOURCE / ".deps/mbedtls")
+LIBJPEG = pathlib.Path(os.environ.get("LIBJPEG_DIR") or SOURCE / ".deps/libjpeg-turbo")
 TOOLS = ("cmake", "ninja", "arm-none-eabi-gcc", "arm-none-eabi-nm", "qemu-system-arm", "cc")
 EXIT_SKIPPED = 77
+WORKBENCH = ("workbench.c", "refinements.c", "codecs.c", "rectify.c", "seals.c")
 MARKERS = ("workbench_begin", "workbench_stop")
 
 
@@ -53,6 +55,11 @@ def need_tools(*more):
             raise Missing(f"{tool} is not installed")
     if not (MBEDTLS / "library/aes.c").exists():
         raise Missing(f"no Mbed TLS sources in {MBEDTLS}; run tools/setup test")
+
+
+def need_libjpeg():
+    if not (LIBJPEG / "jchuff.c").exists():
+        raise Missing(f"no libjpeg-turbo sources in {LIBJPEG}; run tools/setup test")
 
 
 def run(words, timeout_s=300, cwd=None):
@@ -98,20 +105,18 @@ def build_plugin():
     return library
 
 
-def build_host_workbench(folder):
-    """The workbench for the host, from the same sources; with sanitizers, so that the comparison also checks memory."""
-    sources = [path for layer in ("base", "vision", "codec", "wire")
-               for path in sorted((SOURCE / "firmware" / layer).glob("*.c"))]
+def build_host_workbench(folder, names=WORKBENCH, layers=("base", "vision", "codec", "wire"), libraries=()):
+    """A workbench for the host, from the same sources; with sanitizers, so that the comparison also checks memory."""
+    sources = [path for layer in layers for path in sorted((SOURCE / "firmware" / layer).glob("*.c"))]
     bench = SOURCE / "tests/target/workbench"
-    names = ("workbench.c", "refinements.c", "codecs.c", "rectify.c", "seals.c", "main_host.c")
-    sources += [bench / name for name in names]
+    sources += [bench / name for name in (*names, "markers.c", "main_host.c")]
     sources += [SOURCE / "hal/mps2/aes.c", MBEDTLS / "library/aes.c", MBEDTLS / "library/platform_util.c"]
-    includes = [SOURCE / "firmware" / layer / "include" for layer in ("base", "vision", "codec", "wire")]
-    includes += [SOURCE / "hal/mps2/include", SOURCE / "hal/mps2/config", MBEDTLS / "include", MBEDTLS / "library"]
+    includes = [SOURCE / "firmware" / layer / "include" for layer in layers]
+    includes += [bench, SOURCE / "hal/mps2/include", SOURCE / "hal/mps2/config", MBEDTLS / "include", MBEDTLS / "library"]
     program = pathlib.Path(folder) / "workbench-host"
     run(["cc", "-std=gnu11", "-O1", "-fno-strict-aliasing", "-fsanitize=address,undefined",
          "-fno-sanitize-recover=all", '-DMBEDTLS_CONFIG_FILE="tsr_mbedtls_config.h"',
-         *[f"-I{path}" for path in includes], "-o", program, *sources])
+         *[f"-I{path}" for path in includes], "-o", program, *sources, *libraries])
     return program
 
 

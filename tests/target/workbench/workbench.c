@@ -20,7 +20,6 @@
 
 #define ROWS_PER_STEP 4u /* ROWS_PER_STEP_DEFAULT of the node */
 #define SETTLE_FRAMES 4u /* of change detection, its default */
-#define WORK_LINES_CAP 2048u
 #define REDUCTION 4u
 /* More than any mode of the matcher asks for. */
 #define SCRATCH_LEN (WORKBENCH_WIDTH_MAX * (8u * TSR_DISPARITY_COUNT_MAX + 64u))
@@ -33,49 +32,6 @@ static _Alignas(8) uint8_t scratch[SCRATCH_LEN];
 static uint8_t change_state[TSR_CHANGE_STATE_LEN(WORKBENCH_WIDTH_MAX, WORKBENCH_HEIGHT_MAX, REDUCTION)];
 static uint16_t last_map[WORKBENCH_PIXELS_MAX];
 static uint8_t coded[TSR_MAP_ENCODED_LEN_MAX(WORKBENCH_WIDTH_MAX, WORKBENCH_HEIGHT_MAX, TSR_DISPARITY_COUNT_MAX, 0)];
-static char work_lines[WORK_LINES_CAP];
-static size_t work_lines_len;
-
-void workbench_expect(bool held, const char *what)
-{
-    if (!held) {
-        workbench_fail(what);
-    }
-}
-
-/* Empty functions at known addresses: tests/target/icount.c counts between them. */
-__attribute__((noinline, used)) void workbench_begin(void)
-{
-    __asm volatile("" ::: "memory");
-}
-
-__attribute__((noinline, used)) static void workbench_stop(void)
-{
-    __asm volatile("" ::: "memory");
-}
-
-static void put_char(char character)
-{
-    workbench_expect(work_lines_len < WORK_LINES_CAP, "work.txt: too long");
-    work_lines[work_lines_len++] = character;
-}
-
-void workbench_end(const char *work, size_t units)
-{
-    workbench_stop();
-    while (*work != '\0') {
-        put_char(*work++);
-    }
-    put_char(' ');
-    uint32_t divisor = 1;
-    while (units / divisor >= 10u) {
-        divisor *= 10u;
-    }
-    for (; divisor > 0; divisor /= 10u) {
-        put_char((char)('0' + units / divisor % 10u));
-    }
-    put_char('\n');
-}
 
 static void run_change(const struct workbench_case *bench, size_t pixels)
 {
@@ -264,5 +220,5 @@ void workbench_run(const struct workbench_case *bench)
     workbench_run_seals(coded, coded_len);
     run_other_modes(bench, pixels);
     run_lead(bench, pixels, seen);
-    workbench_store("work.txt", work_lines, work_lines_len);
+    workbench_store_work();
 }

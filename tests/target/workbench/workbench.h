@@ -41,6 +41,8 @@ extern const struct tsr_aes_ops *const workbench_aes;
 /* Instructions between the two calls are counted on the board. */
 void workbench_begin(void);
 void workbench_end(const char *work, size_t units);
+/* work.txt, at the end. */
+void workbench_store_work(void);
 
 /* TSR_OK or the end of the program. */
 void workbench_expect(bool held, const char *what);
