@@ -12,6 +12,7 @@ import tempfile
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(SOURCE / "tests/target"))
 import board  # noqa: E402
+import change_energy  # noqa: E402
 import progress  # noqa: E402
 import zone_events  # noqa: E402
 
@@ -106,15 +107,22 @@ def bench():
     programs = build()
     rows = [changes(programs, scene, seed) for scene in SCENES for seed in SEEDS]
     zone_targets, zones = zone_events.bench(programs, SOURCE / "emulator/scenarios", target)
+    energy_targets, energy = change_energy.bench(programs, SOURCE / "emulator/scenarios", target)
     found = scale(programs)
-    return {"targets": [*change_targets(rows), *zone_targets, *scale_targets(found)],
-            "details": {"changes": rows, "zones": zones, "scale": found}}
+    return {"targets": [*change_targets(rows), *zone_targets, *energy_targets, *scale_targets(found)],
+            "details": {"changes": rows, "zones": zones, "energy": energy, "scale": found}}
 
 
-def table(result):
+def changes_table(result):
     lines = ["| scene | cameras x seeds | events | caught | quiet frames | false wakes |", "|---|---:|---:|---:|---:|---:|"]
     for scene in SCENES:
         rows = [row for row in result["details"]["changes"] if row["scene"] == scene]
         cells = [sum(row[field] for row in rows) for field in ("cameras", "events", "caught", "quiet", "quiet_wakes")]
         lines.append(f"| {scene} | " + " | ".join(str(cell) for cell in cells) + " |")
     return "\n".join(lines)
+
+
+def table(result):
+    details = result["details"]
+    return "\n\n".join(("## Change detection", changes_table(result), "## Depth events", zone_events.table(details["zones"]),
+                        "## Energy of a change", change_energy.table(details["energy"])))

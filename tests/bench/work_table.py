@@ -13,6 +13,7 @@ import board  # noqa: E402
 import pictures  # noqa: E402
 
 ENERGY_SOURCE = SOURCE / "emulator/src/energy.cpp"
+BASELINE_SOURCE = SOURCE / "emulator/include/tsr/emulator/baseline.h"
 CALIBRATION_TURNS = {"calibration_1000": 1000, "calibration_2000": 2000}
 
 # The kinds of enum tsr_work_kind in its order, the workbench's measurements whose mean each is, and the unit.
@@ -76,6 +77,11 @@ def emulator_table():
     if len(values) != len(KINDS) + 1 or values[0] != 0:
         raise board.BoardError(f"{ENERGY_SOURCE}: the table does not have the kinds of work that are measured")
     return dict(zip(KINDS, values[1:]))
+
+
+def emulator_jpeg():
+    """Instructions per pixel of baseline nodes."""
+    return float(re.search(r"kInstructionsPerPixel = ([0-9.]+)", BASELINE_SOURCE.read_text("utf-8"))[1])
 
 
 def match_per_output(shape, rows, work="match"):

@@ -166,3 +166,22 @@ def bench(programs, scenarios, target):
         row["latencies_us"] = sorted(row["latencies_us"])[-3:]
         row["delivery_s"] = max(row["delivery_s"], default=None)
     return targets, {"entered": entered, "quiet": quiet, "levels": levels}
+
+
+def table(details):
+    lines = ["| scene, all seeds | entries | caught | told of nobody | days of zones | longest delivery, s |", "|---|---:|---:|---:|---:|---:|"]
+
+    def add(name, rows):
+        sums = [sum(row[key] for row in rows) for key in ("entries", "caught", "false")]
+        days = sum(row["zone_days"] for row in rows)
+        longest = max((row["delivery_s"] for row in rows if row["delivery_s"] is not None), default=0)
+        lines.append(f"| {name} | " + " | ".join(map(str, sums)) + f" | {days:.2f} | {longest:.2f} |")
+    for scene in PEOPLE:
+        add(scene, [row for row in details["entered"] if row["scene"] == scene])
+    add(f"{details['quiet']['scene']}, six hours", [details["quiet"]])
+    lines += ["", "| tank, seed | reports | depth error, median, % | largest, % | reports within one look of the change |", "|---|---:|---:|---:|---:|"]
+    for row in details["levels"]:
+        errors, late = row["errors_percent"], row["late_looks"]
+        within = sum(looks <= LATE_MAX_LOOKS for looks in late)
+        lines.append(f"| {row['seed']} | {row['reports']} | {statistics.median(errors):.2f} | {max(errors):.2f} | {within} of {len(late)} |")
+    return "\n".join(lines)
