@@ -25,7 +25,7 @@ namespace
 constexpr const char *kMark = "tarsier-run";
 constexpr std::array kNames = {"site.toml", "keys.toml", "sink.db",      "sink.db-wal",    "sink.db-shm", "sink.socket",
                                "sink.log",  "sink.json", "summary.json", "capture.pcapng", "index.html",  "cloud.ply",
-                               "maps",      "pictures",  "nodes.csv", "links.csv",    "maps.csv",       "events.csv"};
+                               "maps",      "pictures",  "nodes.csv",    "links.csv",      "maps.csv",    "events.csv"};
 
 } // namespace
 

@@ -43,7 +43,8 @@ Simulation::Simulation(const Site &site, const KeyRing &keys, Pictures &pictures
     clock.at = [this](std::uint64_t time_us, std::function<void()> action) { queue_.at(time_us, std::move(action)); };
     air_ = std::make_unique<Air>(air_model(site_), std::move(clock));
     for (const SiteNode &node : site_.nodes) {
-        EmulatedNode::Surroundings around{queue_, *air_, power_, pictures_, site_.seed, baseline_ ? &*baseline_ : nullptr, {}, {}};
+        EmulatedNode::Surroundings around{
+            queue_, *air_, power_, pictures_, site_.seed, baseline_ ? &*baseline_ : nullptr, {}, {}};
         if (node.role == Role::gateway) {
             around.port = {&kPortOps, this};
         }
