@@ -6,7 +6,7 @@
  *
  *   event  a stretch of time in which what the camera sees of bodies or their shadows changed, with
  *          pauses of less than kRestS, and in which a moved body covers at least kEventPart of the picture
- *          in some frame; caught if a frame of it wakes, or one of the kRestS after it
+ *          in some frame; caught if a frame of it wakes, or the one after its last
  *   quiet  a frame before which nothing of that has changed for kRestS, whatever light and sensor did; false
  *          if it wakes
  *
@@ -40,7 +40,7 @@ struct Tally {
 class Judge
 {
   public:
-    explicit Judge(const tsr::Staging &staging) : world_(staging.scene->world)
+    Judge(const tsr::Staging &staging, double look_s) : world_(staging.scene->world), look_s_(look_s)
     {
         for (const auto &mover : staging.geometry->movers()) {
             moving_.insert(world_.bodies[mover.body].object);
@@ -59,7 +59,7 @@ class Judge
             last_moved_s_ = time_s;
         }
         if (time_s - last_moved_s_ < kRestS) {
-            woke_ = woke_ || woke;
+            woke_ = woke_ || (woke && time_s - last_moved_s_ < 1.5 * look_s_);
             large_ = large_ || part_of_movers(truth) >= kEventPart;
         } else {
             ++tally.quiet;
@@ -91,6 +91,7 @@ class Judge
     }
 
     const tsr::scene::World &world_;
+    double look_s_; /* between two frames */
     std::set<tsr::scene::ObjectId> moving_;
     std::vector<tsr::scene::ObjectId> background_, previous_;
     double last_moved_s_ = -1e9;
@@ -116,10 +117,10 @@ void watch(const tsr::Scenario &scenario, const tsr::Staging &staging, const tsr
     std::vector<std::uint8_t> state(tsr_change_state_len(&config));
     tsr_change change;
     tsr_change_init(&change, &config, state.data(), state.size());
-    Judge judge(staging);
     tsr::scene::Layers before;
     std::uint64_t sun_moment = 0;
     const std::uint64_t period_us = scenario.pairs.watch_period_ms * 1000u;
+    Judge judge(staging, static_cast<double>(period_us) / 1e6);
     for (std::size_t i = 0; static_cast<double>(i * period_us) <= scenario.scene.duration_s * 1e6; ++i) {
         const std::uint64_t time_us = i * period_us;
         camera.capture(caster, time_us, {pixels.data(), width, height, width});
