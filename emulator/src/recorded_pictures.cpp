@@ -6,11 +6,58 @@
 #include "tsr/emulator/recorded_pictures.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
 
 #include "tsr/hal/recorded_source.h"
+#include "tsr/host/input_error.h"
+#include "tsr/host/read_file.h"
 
 namespace tsr
 {
+
+namespace
+{
+
+constexpr const char *kEventsHead = "time_s,what";
+constexpr double kEventTimeMaxS = 1e9;
+
+SceneEvent read_event(const std::string &line, const std::string &place)
+{
+    double time_s = 0;
+    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), time_s);
+    if (error != std::errc() || *end != ',' || !(time_s >= 0 && time_s <= kEventTimeMaxS)) {
+        throw InputError(place, "time_s", "is not a time in seconds before a comma");
+    }
+    return {static_cast<std::uint64_t>(std::llround(time_s * 1e6)), std::string(end + 1)};
+}
+
+/* Another file of this name is somebody else's, or a sink's. */
+std::vector<SceneEvent> read_events(const std::filesystem::path &site_file)
+{
+    const auto file = site_file.parent_path() / "events.csv";
+    std::vector<SceneEvent> events;
+    std::error_code ignored;
+    if (site_file.empty() || !std::filesystem::is_regular_file(file, ignored)) {
+        return events;
+    }
+    std::istringstream text(read_text_file(file));
+    std::string line;
+    if (!std::getline(text, line) || line != kEventsHead) {
+        return events;
+    }
+    for (int number = 2; std::getline(text, line); ++number) {
+        events.push_back(read_event(line, file.string() + ":" + std::to_string(number)));
+    }
+    std::stable_sort(events.begin(), events.end(),
+                     [](const SceneEvent &a, const SceneEvent &b) { return a.time_us < b.time_us; });
+    return events;
+}
+
+} // namespace
+
+RecordedPictures::RecordedPictures(const Site &site) : site_(site), events_(read_events(site.file)) {}
 
 std::shared_ptr<RecordedFrames> RecordedPictures::frames(const std::filesystem::path &folder, std::uint32_t period_ms)
 {
