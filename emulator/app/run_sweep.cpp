@@ -108,6 +108,7 @@ int run_sweep(const Options &options, const Settings &settings)
     check_all(options, settings, runs);
 
     OutFolder out(options.out);
+    out.keep(); /* each run keeps or clears its own folder */
     take_signals();
     report.planned = points.size();
     Lateness late;
@@ -121,7 +122,6 @@ int run_sweep(const Options &options, const Settings &settings)
         report.scenario = staged.name();
         add_run(report, points[i], outcome.summary, folder);
         write_sweep(out.path(), report);
-        out.keep();
         if (outcome.late.worst_s > late.worst_s) {
             late = outcome.late;
         }

@@ -53,7 +53,7 @@ function showFigures() {
 function showRuns() {
   const first = (row) => [row[row.length - 1], ...row.slice(0, -1)];
   $("runs").innerHTML = tableHtml(first(columns), rows.map(first));
-  document.querySelectorAll("#runs tbody td:first-child").forEach((cell) => { cell.innerHTML = `<a href="${cell.textContent}/index.html">${cell.textContent}</a>`; });
+  document.querySelectorAll("#runs tbody td:first-child").forEach((cell) => { cell.innerHTML = `<a style="color:inherit" href="${cell.textContent}/index.html">${cell.textContent}</a>`; });
 }
 
 $("title").textContent = DATA.scenario;
