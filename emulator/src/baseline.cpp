@@ -14,7 +14,7 @@ CodedViews code_views(const Baseline &baseline, tsr_gray_view left, tsr_gray_vie
             Baseline::kInstructionsPerPixel * (pixels(left) + pixels(right))};
 }
 
-Site baseline_site(Site site, const Baseline &baseline)
+Site baseline_site(Site site)
 {
     for (SitePair &pair : site.pairs) {
         if (pair.wing != kNodeNone) {
@@ -22,11 +22,6 @@ Site baseline_site(Site site, const Baseline &baseline)
                              "is of two boards, and baseline nodes have both cameras on one");
         }
         pair.zones.clear();
-    }
-    if (baseline.stream) {
-        for (SiteNode &node : site.nodes) {
-            node.watch_period_ms = baseline.period_ms;
-        }
     }
     return site;
 }

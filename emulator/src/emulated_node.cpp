@@ -80,6 +80,7 @@ EmulatedNode::EmulatedNode(const Site &site, const SiteNode &node, const KeyRing
     : site_node_(node), site_(site), around_(std::move(surroundings)), setup_(set_up_node(site, node, keys)),
       random_(around_.seed * 0x9e3779b97f4a7c15u + node.id)
 {
+    setup_->config.watch_period_us = static_cast<std::uint32_t>(watch_period_us());
     tsr_memory_plan plan{};
     tsr_node_plan_memory(&setup_->config, &plan);
     arena_words_ = (plan.total + sizeof(arena_[0]) - 1) / sizeof(arena_[0]);
@@ -94,6 +95,12 @@ EmulatedNode::EmulatedNode(const Site &site, const SiteNode &node, const KeyRing
 }
 
 EmulatedNode::~EmulatedNode() = default;
+
+std::uint64_t EmulatedNode::watch_period_us() const
+{
+    const bool streams = around_.baseline != nullptr && around_.baseline->stream;
+    return std::uint64_t{streams ? around_.baseline->period_ms : site_node_.watch_period_ms} * 1000;
+}
 
 void EmulatedNode::add_camera(bool right)
 {

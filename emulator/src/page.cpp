@@ -1,7 +1,7 @@
 /*
  * index.html: the page with the run's data put in.
  *
- * The page (emulator/page/) holds one mark, kDataMark, which becomes a JSON object:
+ * The page (emulator/page/) holds one mark for its data, which becomes a JSON object:
  *
  *   summary   summary.json without nodes, pairs and links
  *   played_s  how long there was something to see
@@ -25,7 +25,6 @@
  */
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 #include "page_data.h"
 #include "page_template.h"
@@ -43,7 +42,6 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view kDataMark = "/*TARSIER-DATA*/null";
 constexpr std::size_t kNodesMax = 2000;
 constexpr std::size_t kLinksMax = 4000;
 constexpr std::size_t kMapsMax = 3000;
@@ -235,15 +233,7 @@ void write_page(const std::filesystem::path &out, const Json &summary, const Run
                     {"gallery_of", gallery.size()},
                     {"cloud", cloud_json(out / "cloud.ply")},
                     {"last_pair_share", last_pair_share(*run.site)}};
-    /* "<" could end the element that carries the data. */
-    constexpr std::string_view kEscaped = "\\u003c";
-    std::string text = data.dump();
-    for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos; at += kEscaped.size()) {
-        text.replace(at, 1, kEscaped);
-    }
-    std::string page = kPageTemplate;
-    page.replace(page.find(kDataMark), kDataMark.size(), text);
-    write_file_atomically(out / "index.html", page);
+    write_file_atomically(out / "index.html", filled_page(kPageTemplate, data));
 }
 
 void write_tables(const std::filesystem::path &out, const RunRecord &run)

@@ -1,4 +1,4 @@
-/* Bytes for the page. SPDX-License-Identifier: Apache-2.0 */
+/* Data for pages. SPDX-License-Identifier: Apache-2.0 */
 #include "page_data.h"
 
 #include <algorithm>
@@ -20,6 +20,7 @@ namespace
 constexpr std::size_t kPlyVertexLen = 3 * sizeof(float) + 3; /* tsr/host/ply.h */
 constexpr std::size_t kPointsMax = 80'000;
 constexpr double kGridMax = 65535;
+constexpr std::string_view kDataMark = "/*TARSIER-DATA*/null";
 
 struct Point {
     std::array<float, 3> position_m;
@@ -109,6 +110,17 @@ nlohmann::ordered_json cloud_json(const std::filesystem::path &file)
     }
     return {{"of", vertices.size() / kPlyVertexLen}, {"count", points.size()},    {"low", low}, {"step", step},
             {"positions", base64(positions)},        {"colours", base64(colours)}};
+}
+
+std::string filled_page(std::string page, const nlohmann::ordered_json &data)
+{
+    /* "<" could end the element that carries the data. */
+    constexpr std::string_view kEscaped = "\\u003c";
+    std::string text = data.dump();
+    for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos; at += kEscaped.size()) {
+        text.replace(at, 1, kEscaped);
+    }
+    return page.replace(page.find(kDataMark), kDataMark.size(), text);
 }
 
 } // namespace tsr

@@ -1,4 +1,4 @@
-/* Bytes for the page: private to emulator/src. SPDX-License-Identifier: Apache-2.0 */
+/* Data for pages: private to emulator/src. SPDX-License-Identifier: Apache-2.0 */
 #ifndef TSR_EMULATOR_PAGE_DATA_H
 #define TSR_EMULATOR_PAGE_DATA_H
 
@@ -17,6 +17,9 @@ std::string base64(std::span<const std::uint8_t> bytes);
 
 /* Points of the PLY file that the sink wrote, thinned evenly and on a grid: see page.cpp. Throws InputError. */
 nlohmann::ordered_json cloud_json(const std::filesystem::path &file);
+
+/* A page of page_template.h with data in the place of its mark. */
+std::string filled_page(std::string page, const nlohmann::ordered_json &data);
 
 } // namespace tsr
 

@@ -122,7 +122,7 @@ void Simulation::run(const Progress &progress)
     std::uint64_t latest_start_us = 0;
     for (const auto &node : nodes_) {
         const SiteNode &site_node = node->site_node();
-        longest_period_us = std::max<std::uint64_t>(longest_period_us, site_node.watch_period_ms * 1000u);
+        longest_period_us = std::max(longest_period_us, node->watch_period_us());
         if (site_node.start_ms > 0) {
             latest_start_us = std::max<std::uint64_t>(latest_start_us, site_node.start_ms * std::uint64_t{1000});
             faults_->start_later(*node, site_node.start_ms * std::uint64_t{1000});
@@ -140,6 +140,9 @@ void Simulation::run(const Progress &progress)
     while (!queue_.empty() && queue_.next_us() <= latest_us) {
         if (queue_.next_us() > played_us_ && quiet()) {
             break;
+        }
+        if (pace_) {
+            pace_(queue_.next_us());
         }
         queue_.run_next();
         if (progress && !progress(queue_.now_us(), played_us_)) {

@@ -54,9 +54,41 @@ template <typename Record> Table table_of(const Record &example, const std::vect
     return table;
 }
 
-std::string cell_of(const Json &value)
+std::string text_of(const Json &value)
 {
-    return value.is_null() ? "" : value.is_string() ? csv_field(value.get<std::string>()) : value.dump();
+    return value.is_null() ? "" : value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+struct AlignedColumn {
+    std::vector<std::string> cells; /* its name, then its rows */
+    std::size_t width = 0;
+    bool is_text = false;
+};
+
+AlignedColumn aligned_column(const Table &table, std::size_t index)
+{
+    AlignedColumn column{{table.columns[index]}, table.columns[index].size(), false};
+    for (const auto &row : table.rows) {
+        column.cells.push_back(text_of(row[index]));
+        column.width = std::max(column.width, column.cells.back().size());
+        column.is_text = column.is_text || row[index].is_string();
+    }
+    return column;
+}
+
+void print_columns(const std::vector<AlignedColumn> &columns, const std::vector<std::size_t> &shown, std::string &text)
+{
+    constexpr const char *kGap = "  ";
+    for (std::size_t row = 0; row < columns.front().cells.size(); ++row) {
+        std::string line;
+        for (const std::size_t index : shown) {
+            const AlignedColumn &column = columns[index];
+            const std::string &cell = column.cells[row];
+            const std::string blanks(column.width - cell.size(), ' ');
+            line += (line.empty() ? "" : kGap) + (column.is_text ? cell + blanks : blanks + cell);
+        }
+        text += line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
+    }
 }
 
 } // namespace
@@ -89,7 +121,33 @@ std::string csv_of(const Table &table)
     };
     add_line(table.columns, csv_field);
     for (const auto &row : table.rows) {
-        add_line(row, cell_of);
+        add_line(row, [](const Json &value) { return csv_field(text_of(value)); });
+    }
+    return text;
+}
+
+std::string aligned_text(const Table &table, std::size_t kept, std::size_t width)
+{
+    std::vector<AlignedColumn> columns;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        columns.push_back(aligned_column(table, i));
+    }
+    std::string text;
+    for (std::size_t next = kept; next < columns.size();) {
+        std::vector<std::size_t> shown;
+        std::size_t used = 0;
+        const auto show = [&](std::size_t index) {
+            shown.push_back(index);
+            used += columns[index].width + 2;
+        };
+        for (std::size_t i = 0; i < kept; ++i) {
+            show(i);
+        }
+        do {
+            show(next++);
+        } while (next < columns.size() && (width == 0 || used + columns[next].width <= width));
+        text += text.empty() ? "" : "\n";
+        print_columns(columns, shown, text);
     }
     return text;
 }

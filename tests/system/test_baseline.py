@@ -99,4 +99,5 @@ with tempfile.TemporaryDirectory() as folder:
         print(f"{name}: {totals['maps_received']} delivered, {totals['active_mj_per_map']} mJ each, {json.dumps(totals['latency_s'])}")
 
 refuse([SCENARIO, "--baseline", "changes", "--set", 'pairs.boards="two"'], "pair 1", "two boards")
+refuse([SCENARIO, "--baseline", "changes", "--sweep", 'pairs.boards="one","two"'], "two boards")
 refuse([SCENARIO, "--baseline", "jpeg"], "--baseline", "jpeg")

@@ -1,4 +1,4 @@
-"""A browser draws the page without an error: every chart and table, light and dark, on a desk and on a phone, nothing wider than the screen."""
+"""A browser draws the page of a run, and that of a sweep, without an error: every chart and table, light and dark, on a desk and on a phone, nothing wider than the screen."""
 # SPDX-License-Identifier: Apache-2.0
 import html
 import json
@@ -11,7 +11,7 @@ import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from run_page import PAGE_SCENARIO
-from run_site import check, emulate, skip
+from run_site import BUILD, check, emulate, skip
 
 CHARTS = ("plan", "timeline", "energy-all", "energy-rest", "bytes", "map-bytes", "latency", "latency-hops", "error")
 DATA = re.compile(r'<script id="data" type="application/json">(.*?)</script>', re.DOTALL)
@@ -56,19 +56,42 @@ def crowded(page):
     return DATA.sub(lambda found: found[0].replace(found[1], json.dumps(data).replace("<", "\\u003c")), page), len(rows)
 
 
-def check_drawn(dom, console, width, charts):
+def check_clean(dom, console, width):
+    """Nothing failed, and nothing is wider than the screen; returns what is to be seen."""
     check(not console, f"{width} px: {console[:3]}")
     dom = re.sub(r"<script.*?</script>|data:image[^\"]*", "", dom, flags=re.DOTALL)
-    for chart in charts:
-        drawn = re.search(rf'<div id="{chart}"><div><svg[^>]*aria-label="[^"]+"', dom)
-        check(drawn is not None, f"{width} px: no chart {chart}")
     check("NaN" not in dom and "undefined" not in dom, f"{width} px: not a number")
-    check(dom.count("<table>") == dom.count("<details") >= len(CHARTS), f"{width} px: a chart has no table")
-    tiles = dom.count('class="tile"')
-    check(tiles == 8, f"{width} px: {tiles} tiles")
     wide = re.search(r'id="probe">(\d+) of (\d+)<', dom)
     check(wide is not None and int(wide[1]) <= int(wide[2]) == width, f"{width} px: the page is {wide and wide[0]} px wide")
     return dom
+
+
+def check_drawn(dom, console, width, charts):
+    dom = check_clean(dom, console, width)
+    for chart in charts:
+        drawn = re.search(rf'<div id="{chart}"><div><svg[^>]*aria-label="[^"]+"', dom)
+        check(drawn is not None, f"{width} px: no chart {chart}")
+    check(dom.count("<table>") == dom.count("<details") >= len(CHARTS), f"{width} px: a chart has no table")
+    tiles = dom.count('class="tile"')
+    check(tiles == 8, f"{width} px: {tiles} tiles")
+    return dom
+
+
+def check_sweep(browser, scenario, folder):
+    """A chart of each figure that differs, a point for each run, a row with a link for each."""
+    out = folder / "sweep"
+    words = [BUILD / "bin/tarsier-emulator", scenario, "--out", out, "--quiet", "--sweep", "pairs.baseline_mm=60,90,120", "--sweep", "pairs.count=2,3"]
+    subprocess.run(words, check=True, stdout=subprocess.DEVNULL)
+    framed = folder / "framed.html"
+    for width in (1400, 390):
+        framed.write_text(FRAME % (width, html.escape((out / "index.html").read_text())))
+        dom = check_clean(*browse(browser, framed), width)
+        for figure in ("air_bytes", "error_median_px", "node_energy_mj_total"):
+            chart = re.search(rf'<div id="figure-{figure}"><div><svg.*?</svg>', dom, re.DOTALL)
+            check(chart is not None and chart[0].count("<circle") == 6 and chart[0].count("<path") == 2, f"{width} px: no lines of {figure}")
+        links = re.findall(r'href="(runs/\d+/index.html)"', dom)
+        check(len(links) == 6 and all((out / link).exists() for link in links), f"{width} px: links {links}")
+        check("pairs.count = 3" in dom, f"{width} px: a line has no name")
 
 
 browser = shutil.which("chromium")
@@ -95,4 +118,5 @@ with tempfile.TemporaryDirectory() as folder:
         framed.write_text(FRAME % (width, html.escape(page)))
         dom = check_drawn(*browse(browser, framed), width, (*CHARTS, "life"))
         check(f"{count} nodes" in dom and "diamonds: depth event" in dom, f"{width} px: {count} nodes and their messages are not there")
+    check_sweep(browser, scenario, folder)
     print(f"{len(CHARTS)} charts at 1400 and 390 px")

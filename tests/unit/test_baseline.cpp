@@ -31,7 +31,7 @@ Site one_pair()
 
 struct BaselineRun {
     BaselineRun(const Site &of_maps, const Baseline &baseline, std::uint64_t end_us = kSceneEndUs)
-        : site(baseline_site(of_maps, baseline)), keys(derive_test_keys(7, site)), pictures(site, end_us),
+        : site(baseline_site(of_maps)), keys(derive_test_keys(7, site)), pictures(site, end_us),
           sink(keys, folder.path()), simulation(site, keys, pictures, sink, baseline)
     {
     }
@@ -172,7 +172,7 @@ TEST(Baseline, ViewsThatFitNoMessageAreAFailedCapture)
 
 TEST(Baseline, TwoBoardsAreRefused)
 {
-    const std::string error = refusal([] { baseline_site(short_site(), {}); });
+    const std::string error = refusal([] { baseline_site(short_site()); });
     EXPECT_NE(error.find("porch"), std::string::npos) << error;
     EXPECT_NE(error.find("two boards"), std::string::npos) << error;
 }

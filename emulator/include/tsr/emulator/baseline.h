@@ -40,9 +40,9 @@ struct CodedViews {
 
 CodedViews code_views(const Baseline &baseline, tsr_gray_view left, tsr_gray_view right);
 
-/* The site as baseline nodes need it: no zones, a stream's period. Throws InputError for a pair of two boards: the
- * baseline is of boards that have both views. */
-Site baseline_site(Site site, const Baseline &baseline);
+/* The site as baseline nodes need it, without zones. Throws InputError for a pair of two boards: the baseline is of
+ * boards that have both views. */
+Site baseline_site(Site site);
 
 } // namespace tsr
 

@@ -77,6 +77,7 @@ class EmulatedNode
 
     std::uint16_t id() const { return site_node_.id; }
     const SiteNode &site_node() const { return site_node_; }
+    std::uint64_t watch_period_us() const;
     tsr_node_phase phase() const;
     bool at_rest() const; /* idle or watching, no map owed, nothing under way in MAC or sender; or off */
     /* Of all lives. */

@@ -1,5 +1,6 @@
 /*
- * The folder of a run's results, claimed for this run alone.
+ * The folder of the results of a run, or of a sweep with its runs below, claimed
+ * for it alone.
  *
  * A file tarsier-run marks a folder as ours and is locked while a run writes
  * there. A folder that holds files of the names we write but no mark is

@@ -29,6 +29,10 @@ Table maps_table(const RunRecord &run);
 /* RFC 4180 with line feeds; a header line even without rows. */
 std::string csv_of(const Table &table);
 
+/* The same cells in columns as wide as they must be, numbers to the right. Lines end at width: columns that do not fit
+ * follow below, the first kept ones before them again. width 0: lines of any length. */
+std::string aligned_text(const Table &table, std::size_t kept, std::size_t width);
+
 } // namespace tsr
 
 #endif
