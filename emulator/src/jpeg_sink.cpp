@@ -10,9 +10,9 @@
 #include "tsr/host/atomic_file.h"
 #include "tsr/host/image_file.h"
 #include "tsr/host/input_error.h"
+#include "tsr/host/sink_answer.h"
 
 extern "C" {
-#include "tsr/base/bytes.h"
 #include "tsr/wire/address.h"
 }
 
@@ -21,24 +21,6 @@ namespace tsr
 
 namespace
 {
-
-/* The ANSWER that carries one fragment or none. */
-std::vector<std::uint8_t> answer_to(std::uint16_t sequence, const std::vector<std::uint8_t> &fragment)
-{
-    std::vector<std::uint8_t> body;
-    if (!fragment.empty()) {
-        body.push_back(static_cast<std::uint8_t>(fragment.size()));
-        body.insert(body.end(), fragment.begin(), fragment.end());
-    }
-    const tsr_link_frame frame{TSR_LINK_ANSWER, sequence, body.data(), body.size()};
-    std::vector<std::uint8_t> bytes(TSR_LINK_FRAME_MAX);
-    std::size_t len = 0;
-    if (tsr_link_encode(&frame, bytes.data(), bytes.size(), &len) != TSR_OK) {
-        throw std::logic_error("JpegSink: an ANSWER does not fit its frame");
-    }
-    bytes.resize(len);
-    return bytes;
-}
 
 std::string name_of(const tsr_message_header &header)
 {
@@ -72,10 +54,10 @@ std::vector<std::uint8_t> JpegSink::exchange(const std::uint8_t *frame, std::siz
             continue;
         }
         if (request.type != TSR_LINK_UPLINK || request.body_len < TSR_LINK_UPLINK_HEADER_LEN) {
-            return answer_to(request.sequence, {});
+            return answer_frame(request.sequence, {});
         }
-        return answer_to(request.sequence, take_fragment(request.body + TSR_LINK_UPLINK_HEADER_LEN,
-                                                         request.body_len - TSR_LINK_UPLINK_HEADER_LEN));
+        return answer_frame(request.sequence, take_fragment(request.body + TSR_LINK_UPLINK_HEADER_LEN,
+                                                            request.body_len - TSR_LINK_UPLINK_HEADER_LEN));
     }
     return {};
 }
@@ -117,7 +99,8 @@ std::vector<std::uint8_t> JpegSink::take_fragment(const std::uint8_t *bytes, std
             return {};
         }
     }
-    return seal(origin, fragment.origin, judge(origin, fragment));
+    const tsr_body_status status = judge(origin, fragment);
+    return status_fragment(origin.cipher, fragment.origin, ++counter_, status);
 }
 
 /* The answer to a poll, or to the fragment that completes a message. */
@@ -165,32 +148,6 @@ tsr_delivery JpegSink::keep(const tsr_message_header &header, std::span<const st
     write_file_atomically(folder_ / (name + "-right.jpg"), right);
     received_.push_back({header.origin, header.counter, parts.capture_time_us, left.size(), right.size(), name});
     return TSR_DELIVERY_COMMITTED;
-}
-
-std::vector<std::uint8_t> JpegSink::seal(const Origin &origin, std::uint16_t node, const tsr_body_status &status)
-{
-    std::array<std::uint8_t, TSR_BODY_STATUS_MAX + TSR_MESSAGE_OVERHEAD_LEN> message{};
-    std::size_t body_len = 0;
-    std::size_t message_len = 0;
-    const tsr_message_header header{TSR_MESSAGE_STATUS, TSR_KEY_NODE, TSR_ADDRESS_SINK, node, ++counter_};
-    std::vector<std::uint8_t> bytes(TSR_FRAME_PAYLOAD_MAX);
-    std::size_t len = 0;
-    bool sealed =
-        tsr_body_write_status(&status, message.data() + TSR_MESSAGE_HEADER_LEN, TSR_BODY_STATUS_MAX, &body_len) ==
-            TSR_OK &&
-        tsr_message_seal(&header, &origin.cipher, message.data(), message.size(), body_len, &message_len) == TSR_OK;
-    if (sealed) {
-        tsr_fragment fragment = tsr_fragment_of(message.data(), message_len, 0);
-        fragment.origin = TSR_ADDRESS_SINK;
-        fragment.destination = node;
-        fragment.message_id = static_cast<std::uint16_t>(header.counter);
-        sealed = tsr_fragment_write(&fragment, bytes.data(), bytes.size(), &len) == TSR_OK;
-    }
-    if (!sealed) {
-        throw std::logic_error("JpegSink: a STATUS does not fit one fragment");
-    }
-    bytes.resize(len);
-    return bytes;
 }
 
 } // namespace tsr

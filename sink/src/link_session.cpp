@@ -1,7 +1,7 @@
 /* HELLO, UPLINK, ANSWER. SPDX-License-Identifier: Apache-2.0 */
 #include "tsr/sink/link_session.h"
 
-#include <stdexcept>
+#include "tsr/host/sink_answer.h"
 
 extern "C" {
 #include "tsr/base/bytes.h"
@@ -9,27 +9,6 @@ extern "C" {
 
 namespace tsr
 {
-namespace
-{
-
-std::vector<std::uint8_t> answer_frame(std::uint16_t sequence, const std::vector<std::uint8_t> &fragment)
-{
-    std::vector<std::uint8_t> body;
-    if (!fragment.empty()) {
-        body.push_back(static_cast<std::uint8_t>(fragment.size()));
-        body.insert(body.end(), fragment.begin(), fragment.end());
-    }
-    const tsr_link_frame frame{TSR_LINK_ANSWER, sequence, body.data(), body.size()};
-    std::vector<std::uint8_t> bytes(TSR_LINK_FRAME_MAX);
-    std::size_t len = 0;
-    if (tsr_link_encode(&frame, bytes.data(), bytes.size(), &len) != TSR_OK) {
-        throw std::logic_error("LinkServer: an ANSWER does not fit its frame");
-    }
-    bytes.resize(len);
-    return bytes;
-}
-
-} // namespace
 
 void LinkServer::send(LinkSession &session, std::span<const std::uint8_t> frame)
 {

@@ -7,6 +7,7 @@
 #include "event_message.h"
 #include "map_message.h"
 #include "tsr/host/aes.h"
+#include "tsr/host/sink_answer.h"
 
 extern "C" {
 #include "tsr/wire/address.h"
@@ -70,7 +71,8 @@ std::vector<std::vector<std::uint8_t>> Receiver::receive(std::span<const std::ve
         const Verdict &verdict = verdicts[i];
         if (verdict.status && (on_disk || !verdict.stored)) {
             try {
-                answers[i] = seal_status(verdict.node, *verdict.status);
+                answers[i] = status_fragment(origins_.at(verdict.node).cipher, verdict.node,
+                                             store_.take_sealing_counter(), *verdict.status);
             } catch (const StoreError &) {
                 tally_.add(Cause::store_failed); /* no counter, no answer */
             }
@@ -309,32 +311,6 @@ std::optional<Cause> Receiver::store_map(const Origin &origin, const tsr_message
                                stored.kept,
                                stored.mse_px2};
     return std::nullopt;
-}
-
-std::vector<std::uint8_t> Receiver::seal_status(std::uint16_t node, const tsr_body_status &status)
-{
-    std::array<std::uint8_t, TSR_BODY_STATUS_MAX + TSR_MESSAGE_OVERHEAD_LEN> message{};
-    std::size_t body_len = 0;
-    std::size_t message_len = 0;
-    const tsr_message_header header{TSR_MESSAGE_STATUS, TSR_KEY_NODE, TSR_ADDRESS_SINK, node,
-                                    store_.take_sealing_counter()};
-    if (tsr_body_write_status(&status, message.data() + TSR_MESSAGE_HEADER_LEN, TSR_BODY_STATUS_MAX, &body_len) !=
-            TSR_OK ||
-        tsr_message_seal(&header, &origins_.at(node).cipher, message.data(), message.size(), body_len, &message_len) !=
-            TSR_OK) {
-        throw std::logic_error("Receiver: a STATUS does not fit its message");
-    }
-    tsr_fragment fragment = tsr_fragment_of(message.data(), message_len, 0);
-    fragment.origin = TSR_ADDRESS_SINK;
-    fragment.destination = node;
-    fragment.message_id = static_cast<std::uint16_t>(header.counter);
-    std::vector<std::uint8_t> bytes(TSR_FRAME_PAYLOAD_MAX);
-    std::size_t len = 0;
-    if (tsr_fragment_write(&fragment, bytes.data(), bytes.size(), &len) != TSR_OK) {
-        throw std::logic_error("Receiver: a STATUS does not fit one fragment");
-    }
-    bytes.resize(len);
-    return bytes;
 }
 
 } // namespace tsr

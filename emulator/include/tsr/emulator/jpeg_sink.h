@@ -64,7 +64,6 @@ class JpegSink : public SinkLink
     std::vector<std::uint8_t> take_fragment(const std::uint8_t *bytes, std::size_t len);
     tsr_body_status judge(Origin &origin, const tsr_fragment &fragment);
     tsr_delivery keep(const tsr_message_header &header, std::span<const std::uint8_t> body);
-    std::vector<std::uint8_t> seal(const Origin &origin, std::uint16_t node, const tsr_body_status &status);
 
     std::filesystem::path folder_;
     std::map<std::uint16_t, Origin> origins_;

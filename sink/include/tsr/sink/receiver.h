@@ -117,7 +117,6 @@ class Receiver
                                       std::span<const std::uint8_t> body, Verdict &verdict);
     void begin_storing(Verdict &verdict);
     bool commit(std::vector<Verdict> &verdicts);
-    std::vector<std::uint8_t> seal_status(std::uint16_t node, const tsr_body_status &status);
     void remember_stored(Origin &origin, std::uint16_t node) const;
 
     const Site &site_;
