@@ -81,6 +81,9 @@ EmulatedNode::EmulatedNode(const Site &site, const SiteNode &node, const KeyRing
       random_(around_.seed * 0x9e3779b97f4a7c15u + node.id)
 {
     setup_->config.watch_period_us = static_cast<std::uint32_t>(watch_period_us());
+    if (streams()) {
+        setup_->config.change.settle_frames = 1; /* it asks for no change */
+    }
     tsr_memory_plan plan{};
     tsr_node_plan_memory(&setup_->config, &plan);
     arena_words_ = (plan.total + sizeof(arena_[0]) - 1) / sizeof(arena_[0]);
@@ -98,8 +101,7 @@ EmulatedNode::~EmulatedNode() = default;
 
 std::uint64_t EmulatedNode::watch_period_us() const
 {
-    const bool streams = around_.baseline != nullptr && around_.baseline->stream;
-    return std::uint64_t{streams ? around_.baseline->period_ms : site_node_.watch_period_ms} * 1000;
+    return std::uint64_t{streams() ? around_.baseline->period_ms : site_node_.watch_period_ms} * 1000;
 }
 
 void EmulatedNode::add_camera(bool right)
@@ -251,7 +253,7 @@ void EmulatedNode::schedule_step(std::uint64_t time_us)
 /* A baseline node's views go to its own coder. */
 void EmulatedNode::take_views()
 {
-    if (around_.baseline->stream) {
+    if (streams()) {
         tsr_node_wake_next(node_.get());
     }
     tsr_gray_view left{};
@@ -315,8 +317,7 @@ bool EmulatedNode::at_rest() const
         return true;
     }
     /* What a lost capture, view or map has shown is still owed: the next frame is captured again. */
-    const bool streams = around_.baseline != nullptr && around_.baseline->stream;
-    const bool owes_map = node_->recapture && !streams &&
+    const bool owes_map = node_->recapture && !streams() &&
                           (node_->config.role == TSR_ROLE_LEAD || node_->config.role == TSR_ROLE_BINOCULAR);
     return phase() <= TSR_PHASE_WATCHING && !owes_map && tsr_node_is_quiet(node_.get());
 }

@@ -53,7 +53,6 @@ std::vector<NodeRecord> gather_nodes(const Site &site, const Simulation &simulat
         }
     }
     auto heard_us = times_heard_us(simulation.traffic());
-    const double duration_us = static_cast<double>(simulation.duration_us());
     std::vector<NodeRecord> nodes;
     for (std::size_t i = 0; i < simulation.nodes().size(); ++i) {
         const EmulatedNode &node = *simulation.nodes()[i];
@@ -68,7 +67,8 @@ std::vector<NodeRecord> gather_nodes(const Site &site, const Simulation &simulat
         record.air = simulation.air_tally(i);
         record.energy = node.energy();
         record.active_mj = node.active_mj(heard_us[node.id()]);
-        record.mean_uw = duration_us > 0 ? record.energy.total() / duration_us * 1e9 : 0;
+        const double powered_us = static_cast<double>(node.times().total_us);
+        record.mean_uw = powered_us > 0 ? record.energy.total() / powered_us * 1e9 : 0;
         record.life = battery_life(site.battery, record.mean_uw);
         record.work_units = node.work_units();
         record.arena_len = node.arena_len();

@@ -133,9 +133,10 @@ void Simulation::run(const Progress &progress)
     faults_->schedule(site_.faults);
     /* Every watching node sees the last frame at least once, and however short a recording is, there is a first map,
      * also of a node that a fault has started anew. */
-    played_us_ =
-        std::max(pictures_.end_us() + 2 * longest_period_us,
-                 std::max(latest_start_us, FaultTimeline::last_us(site_.faults)) + kFirstMapFrames * longest_period_us);
+    const bool streams = baseline_ && baseline_->stream;
+    played_us_ = std::max(pictures_.end_us() + (streams ? 0 : 2) * longest_period_us,
+                          std::max(latest_start_us, FaultTimeline::last_us(site_.faults)) +
+                              (streams ? 2 : kFirstMapFrames) * longest_period_us);
     const std::uint64_t latest_us = played_us_ + kPatienceUs;
     while (!queue_.empty() && queue_.next_us() <= latest_us) {
         if (queue_.next_us() > played_us_ && quiet()) {

@@ -154,12 +154,15 @@ void Traffic::read_status(std::uint64_t time_us, const std::uint8_t *bytes, std:
         status.state != TSR_DELIVERY_COMMITTED) {
         return;
     }
-    /* A poll that was repeated is answered again. */
-    const auto [last, first] = committed_.try_emplace(fragment.destination, status.message_id);
-    if (!first && last->second == status.message_id) {
+    /* A poll that was repeated is answered again, perhaps after another message's. */
+    std::deque<std::uint16_t> &latest = committed_[fragment.destination];
+    if (std::find(latest.begin(), latest.end(), status.message_id) != latest.end()) {
         return;
     }
-    last->second = status.message_id;
+    latest.push_back(status.message_id);
+    if (latest.size() > kCommitsRemembered) {
+        latest.pop_front();
+    }
     const std::size_t kind = known_kind(fragment.destination, TSR_ADDRESS_SINK, status.message_id);
     commits_.push_back({time_us, fragment.destination, status.message_id, static_cast<std::uint8_t>(kind)});
 }

@@ -233,7 +233,7 @@ std::vector<TomlFields> TomlFields::tables(std::string_view field)
     }
     const toml::array *array = node->as_array();
     if (array == nullptr || !(array->empty() || array->is_homogeneous(toml::node_type::table))) {
-        refuse(field, "is not a list of tables, [[" + std::string(field) + "]]");
+        refuse(field, "is not a list of tables, [[" + std::string(field) + "]]; --set cannot write one");
     }
     for (std::size_t i = 0; i < array->size(); i++) {
         result.emplace_back(*array->get(i)->as_table(), file_, std::string(field) + " " + std::to_string(i + 1));

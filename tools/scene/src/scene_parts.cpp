@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "tsr/scene/surface.h"
 
@@ -18,6 +19,17 @@ namespace
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kSunDegreesPerHour = 15;
+
+/* Steps of height from one place of a ring to the next: neighbours are far apart, and every height occurs once. */
+int height_stride(int count)
+{
+    for (const int stride : {7, 3, 5, 11}) {
+        if (std::gcd(stride, count) == 1) {
+            return stride;
+        }
+    }
+    return 1;
+}
 
 /* A leaf, or a twig with leaves: a quad that faces anywhere. */
 void add_leaf(Mesh &mesh, const Eigen::Vector3f &at, float size, SurfaceId leaves, Chance &chance)
@@ -108,7 +120,8 @@ std::vector<Placement> make_ring(const LayoutOptions &layout, const Eigen::Vecto
     std::vector<Placement> ring;
     for (int i = 0; i < layout.count; ++i) {
         const double angle = (angle_deg + span_deg * (i + 0.5) / layout.count) * kPi / 180;
-        const double share = layout.count > 1 ? (i * 7 % layout.count) / static_cast<double>(layout.count - 1) : 0;
+        const int level = i * height_stride(layout.count) % layout.count;
+        const double share = layout.count > 1 ? level / static_cast<double>(layout.count - 1) : 0;
         Placement placement;
         placement.name = "pair " + std::to_string(i + 1);
         placement.eye = centre + Eigen::Vector3d(distance * std::cos(angle), distance * std::sin(angle), 0);

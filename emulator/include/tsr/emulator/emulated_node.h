@@ -87,8 +87,9 @@ class EmulatedNode
     std::size_t arena_len() const { return arena_words_ * sizeof(arena_[0]); }
     /* Instructions done, by kind of work. */
     const std::array<std::uint64_t, TSR_WORK_COUNT> &work_units() const { return work_units_; }
-    EnergyMj energy() const; /* from power-on until now */
-    /* What would not have been spent if nothing had changed, mJ; heard_us: time on air of frames sent to this node. */
+    NodeTimes times() const; /* with power, until now */
+    EnergyMj energy() const;
+    /* Of what was done because of changes, mJ; heard_us: time on air of frames sent to this node. */
     double active_mj(std::uint64_t heard_us) const;
 
   private:
@@ -99,9 +100,9 @@ class EmulatedNode
     void attend();
     void schedule_step(std::uint64_t time_us);
     void step();
+    bool streams() const { return around_.baseline != nullptr && around_.baseline->stream; }
     void take_views();
     std::uint64_t code_views(std::uint64_t most_us);
-    NodeTimes times() const;
     void serve_mac();
     void note_phase(tsr_node_phase phase);
     static void fill_entropy(void *self, std::uint8_t *bytes, std::size_t len);

@@ -100,8 +100,8 @@ struct IdleTimes {
     std::uint64_t captures_watching = 0;
 };
 
-/* mJ that changes have cost: frames sent, heard and acknowledged, captures of woken pairs, and the processor but for
- * watching. Idle listening, watching, standby and sleep are not in it. docs/energy.md, eq. (3) */
+/* mJ of what was done because of changes: frames sent, heard and acknowledged, captures of woken pairs, and the
+ * processor but for watching. Idle listening, watching, standby and sleep are not in it. docs/energy.md, eq. (3) */
 double active_mj(const PowerModel &model, const NodeTimes &times, const IdleTimes &idle);
 
 } // namespace tsr

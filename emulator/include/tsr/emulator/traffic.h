@@ -15,6 +15,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <utility>
 #include <vector>
@@ -91,6 +92,8 @@ class Traffic
         std::size_t seen = 0;                                           /* entries written, the oldest over and over */
     };
 
+    static constexpr std::size_t kCommitsRemembered = 8; /* a node has two messages under way at most */
+
     std::size_t kind_of(const tsr_fragment &fragment);
     std::size_t known_kind(std::uint16_t origin, std::uint16_t destination, std::uint16_t message_id) const;
     void read_status(std::uint64_t time_us, const std::uint8_t *bytes, std::size_t len);
@@ -98,7 +101,7 @@ class Traffic
     tsr_cipher link_cipher_{};
     std::map<std::uint16_t, tsr_cipher> node_ciphers_;
     std::map<std::pair<std::uint16_t, std::uint16_t>, Messages> messages_; /* by origin and destination */
-    std::map<std::uint16_t, std::uint16_t> committed_;                     /* the last message id of each node */
+    std::map<std::uint16_t, std::deque<std::uint16_t>> committed_;         /* the last message ids of each node */
     Links links_;
     std::vector<Commit> commits_;
 };
