@@ -98,21 +98,14 @@ def build_plugin():
     return library
 
 
-def build_host_workbench(folder):
+def build_host_workbench():
     """The workbench for the host, from the same sources; with sanitizers, so that the comparison also checks memory."""
-    sources = [path for layer in ("base", "vision", "codec", "wire")
-               for path in sorted((SOURCE / "firmware" / layer).glob("*.c"))]
-    bench = SOURCE / "tests/target/workbench"
-    names = ("workbench.c", "refinements.c", "codecs.c", "rectify.c", "seals.c", "main_host.c")
-    sources += [bench / name for name in names]
-    sources += [SOURCE / "hal/mps2/aes.c", MBEDTLS / "library/aes.c", MBEDTLS / "library/platform_util.c"]
-    includes = [SOURCE / "firmware" / layer / "include" for layer in ("base", "vision", "codec", "wire")]
-    includes += [SOURCE / "hal/mps2/include", SOURCE / "hal/mps2/config", MBEDTLS / "include", MBEDTLS / "library"]
-    program = pathlib.Path(folder) / "workbench-host"
-    run(["cc", "-std=gnu11", "-O1", "-fno-strict-aliasing", "-fsanitize=address,undefined",
-         "-fno-sanitize-recover=all", '-DMBEDTLS_CONFIG_FILE="tsr_mbedtls_config.h"',
-         *[f"-I{path}" for path in includes], "-o", program, *sources])
-    return program
+    need_tools()
+    with build_lock("asan"):
+        if not (SOURCE / "build/asan/build.ninja").exists():
+            run(["cmake", "--preset", "asan"], cwd=SOURCE)
+        run(["cmake", "--build", SOURCE / "build/asan", "--target", "workbench-host"], timeout_s=600)
+    return SOURCE / "build/asan/bin/workbench-host"
 
 
 def run_image(image, words=(), cwd=None, timeout_s=120, options=(), machine=DEFAULT):
