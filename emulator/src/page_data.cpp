@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <string_view>
 #include <vector>
 
-#include "tsr/host/input_error.h"
-#include "tsr/host/read_file.h"
+#include "tsr/host/ply.h"
 
 namespace tsr
 {
@@ -17,39 +15,23 @@ namespace tsr
 namespace
 {
 
-constexpr std::size_t kPlyVertexLen = 3 * sizeof(float) + 3; /* tsr/host/ply.h */
 constexpr std::size_t kPointsMax = 80'000;
 constexpr double kGridMax = 65535;
 constexpr std::string_view kDataMark = "/*TARSIER-DATA*/null";
 
-struct Point {
-    std::array<float, 3> position_m;
-    std::array<std::uint8_t, 3> colour;
-};
-
-std::vector<Point> thinned_points(std::span<const std::uint8_t> vertices)
-{
-    const std::size_t count = vertices.size() / kPlyVertexLen;
-    const std::size_t shown = std::min(count, kPointsMax);
-    std::vector<Point> points(shown);
-    for (std::size_t i = 0; i < shown; ++i) {
-        const auto vertex = vertices.subspan(i * count / shown * kPlyVertexLen, kPlyVertexLen);
-        std::memcpy(points[i].position_m.data(), vertex.data(), sizeof points[i].position_m);
-        std::copy(vertex.end() - 3, vertex.end(), points[i].colour.begin());
-    }
-    return points;
-}
+using Axis = float CloudPoint::*;
+constexpr std::array<Axis, 3> kAxes = {&CloudPoint::x_m, &CloudPoint::y_m, &CloudPoint::z_m};
 
 /* Outliers are many metres away: the grid covers what all but a hundredth of the points need. */
-std::array<double, 2> range_of(const std::vector<Point> &points, std::size_t axis)
+std::array<double, 2> range_of(const std::vector<CloudPoint> &points, Axis axis)
 {
     if (points.empty()) {
         return {0, 0};
     }
     std::vector<float> values;
     values.reserve(points.size());
-    for (const Point &point : points) {
-        values.push_back(point.position_m.at(axis));
+    for (const CloudPoint &point : points) {
+        values.push_back(point.*axis);
     }
     std::sort(values.begin(), values.end());
     const std::size_t off = values.size() / 200;
@@ -80,36 +62,27 @@ std::string base64(std::span<const std::uint8_t> bytes)
 
 nlohmann::ordered_json cloud_json(const std::filesystem::path &file)
 {
-    const auto bytes = read_file(file);
-    const std::string_view text(reinterpret_cast<const char *>(bytes.data()), bytes.size());
-    constexpr std::string_view kEnd = "end_header\n";
-    const std::size_t header_end = text.find(kEnd);
-    if (header_end == std::string_view::npos) {
-        throw InputError(file.string(), "header", "has no end");
-    }
-    const std::span<const std::uint8_t> vertices(bytes.data() + header_end + kEnd.size(),
-                                                 bytes.size() - header_end - kEnd.size());
-    const std::vector<Point> points = thinned_points(vertices);
+    const auto [of, points] = sample_ply(file, kPointsMax);
     std::array<double, 3> low{};
     std::array<double, 3> step{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto [first, last] = range_of(points, axis);
+        const auto [first, last] = range_of(points, kAxes.at(axis));
         low.at(axis) = first;
         step.at(axis) = std::max((last - first) / kGridMax, 1e-9);
     }
     std::vector<std::uint8_t> positions;
     std::vector<std::uint8_t> colours;
-    for (const Point &point : points) {
+    for (const CloudPoint &point : points) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double place = (static_cast<double>(point.position_m.at(axis)) - low.at(axis)) / step.at(axis);
+            const double place = (static_cast<double>(point.*kAxes.at(axis)) - low.at(axis)) / step.at(axis);
             const auto value = static_cast<std::uint16_t>(std::lround(std::clamp(place, 0.0, kGridMax)));
             positions.push_back(static_cast<std::uint8_t>(value));
             positions.push_back(static_cast<std::uint8_t>(value >> 8));
         }
-        colours.insert(colours.end(), point.colour.begin(), point.colour.end());
+        colours.insert(colours.end(), {point.red, point.green, point.blue});
     }
-    return {{"of", vertices.size() / kPlyVertexLen}, {"count", points.size()},    {"low", low}, {"step", step},
-            {"positions", base64(positions)},        {"colours", base64(colours)}};
+    return {{"of", of},     {"count", points.size()},         {"low", low},
+            {"step", step}, {"positions", base64(positions)}, {"colours", base64(colours)}};
 }
 
 std::string filled_page(std::string page, const nlohmann::ordered_json &data)

@@ -134,13 +134,13 @@ INLINE vec16 load_splat16(const int16_t *at)
 INLINE vec16 gather16(const uint16_t *table, const uint16_t *index)
 {
     __m128i found = _mm_cvtsi32_si128(table[index[0]]);
-    found = _mm_insert_epi16(found, table[index[1]], 1);
-    found = _mm_insert_epi16(found, table[index[2]], 2);
-    found = _mm_insert_epi16(found, table[index[3]], 3);
-    found = _mm_insert_epi16(found, table[index[4]], 4);
-    found = _mm_insert_epi16(found, table[index[5]], 5);
-    found = _mm_insert_epi16(found, table[index[6]], 6);
-    return _mm_insert_epi16(found, table[index[7]], 7);
+    found = _mm_insert_epi16(found, (int16_t)table[index[1]], 1);
+    found = _mm_insert_epi16(found, (int16_t)table[index[2]], 2);
+    found = _mm_insert_epi16(found, (int16_t)table[index[3]], 3);
+    found = _mm_insert_epi16(found, (int16_t)table[index[4]], 4);
+    found = _mm_insert_epi16(found, (int16_t)table[index[5]], 5);
+    found = _mm_insert_epi16(found, (int16_t)table[index[6]], 6);
+    return _mm_insert_epi16(found, (int16_t)table[index[7]], 7);
 }
 
 INLINE vec8 add8(vec8 a, vec8 b)

@@ -2,7 +2,9 @@
 #include "tsr/sink/export.h"
 
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -61,22 +63,47 @@ void export_map(const StoredMap &stored, const DecodedMap &map, const fs::path &
     }
 }
 
-std::size_t export_cloud(const Site &site, const Store &store, const fs::path &file)
+/* Points of each kept map, by node and counter. */
+using PointCounts = std::map<std::pair<std::uint16_t, std::uint32_t>, std::size_t>;
+
+struct CloudPart {
+    const SitePair *pair;
+    StoredMap stored;
+};
+
+/* The latest kept map of each pair, and the points of all; one that has come since the others were counted is too. */
+std::pair<std::vector<CloudPart>, std::size_t> cloud_parts(const Site &site, const Store &store, PointCounts &counts)
 {
-    std::vector<CloudPoint> cloud;
+    std::vector<CloudPart> parts;
+    std::size_t total = 0;
     for (const SitePair &pair : site.pairs) {
-        const auto stored = store.last_kept(pair.lead);
-        const auto map = stored ? decode_map(stored->coded_map) : std::nullopt;
+        auto stored = store.last_kept(pair.lead);
+        if (!stored) {
+            continue;
+        }
+        const auto [count, is_new] = counts.try_emplace({stored->node, stored->counter}, 0);
+        const auto map = is_new ? decode_map(stored->coded_map) : std::nullopt;
+        count->second = map ? count_points(PairGeometry(pair), restored(*map)) : count->second;
+        total += count->second;
+        parts.push_back({&pair, std::move(*stored)});
+    }
+    return {std::move(parts), total};
+}
+
+/* One pair's points at a time: those of a thousand take more memory than all else. */
+void write_cloud(const std::vector<CloudPart> &parts, std::size_t total, const fs::path &file)
+{
+    PlyWriter cloud(file, total);
+    for (const auto &[pair, stored] : parts) {
+        const auto map = decode_map(stored.coded_map);
         if (!map) {
             continue;
         }
-        const auto reference = decode_reference(stored->coded_reference);
+        const auto reference = decode_reference(stored.coded_reference);
         const bool fits = reference && reference->size() == ImageSize{map->info.width, map->info.height};
-        const auto points = triangulate(PairGeometry(pair), restored(*map), fits ? &*reference : nullptr);
-        cloud.insert(cloud.end(), points.begin(), points.end());
+        cloud.add(triangulate(PairGeometry(*pair), restored(*map), fits ? &*reference : nullptr));
     }
-    write_ply(file, cloud);
-    return cloud.size();
+    cloud.complete();
 }
 
 Json node_json(const SiteNode &node, const NodeNumbers &numbers)
@@ -166,6 +193,7 @@ ExportResult export_site(const Site &site, const Store &store, const SessionNumb
     make_folder(folder);
     std::map<std::uint16_t, NodeNumbers> numbers;
     NodeNumbers total;
+    PointCounts counts;
     Json received = Json::array();
     store.for_each([&](const StoredMap &stored) {
         for (NodeNumbers *sum : {&numbers[stored.node], &total}) {
@@ -173,8 +201,13 @@ ExportResult export_site(const Site &site, const Store &store, const SessionNumb
             sum->map_bytes += stored.coded_map.size();
             sum->reference_bytes += stored.coded_reference.size();
         }
-        if (const auto map = decode_map(stored.coded_map)) {
-            export_map(stored, restored(*map), folder);
+        if (const auto coded = decode_map(stored.coded_map)) {
+            const DecodedMap map = restored(*coded);
+            export_map(stored, map, folder);
+            const SitePair *pair = stored.kept ? site.pair_of(stored.node) : nullptr;
+            if (pair != nullptr) {
+                counts[{stored.node, stored.counter}] = count_points(PairGeometry(*pair), map);
+            }
         }
         received.push_back(map_json(stored));
     });
@@ -182,7 +215,9 @@ ExportResult export_site(const Site &site, const Store &store, const SessionNumb
     ExportResult result;
     result.events = events.json.size();
     result.maps = total.kept + total.dropped;
-    result.points = export_cloud(site, store, out / "cloud.ply");
+    const auto [parts, points] = cloud_parts(site, store, counts);
+    result.points = points;
+    write_cloud(parts, points, out / "cloud.ply");
     Json json{{"format", kJsonFormat},
               {"site", site.name},
               {"maps",

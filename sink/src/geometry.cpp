@@ -1,6 +1,7 @@
 /* Triangulation. SPDX-License-Identifier: Apache-2.0 */
 #include "tsr/sink/geometry.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace tsr
@@ -10,6 +11,11 @@ namespace
 
 constexpr std::uint8_t kMidGray = 128;
 constexpr double kMetresPerMillimetre = 0.001;
+
+double pixels_of(std::uint16_t disparity_q4)
+{
+    return static_cast<double>(disparity_q4) / TSR_DISPARITY_ONE_Q4;
+}
 
 } // namespace
 
@@ -61,8 +67,7 @@ std::vector<CloudPoint> triangulate(const PairGeometry &geometry, const DecodedM
             if (map.disparity_q4[i] == TSR_DISPARITY_INVALID) {
                 continue;
             }
-            const double disparity_px = static_cast<double>(map.disparity_q4[i]) / TSR_DISPARITY_ONE_Q4;
-            const auto p_site = geometry.point_site(x, y, disparity_px);
+            const auto p_site = geometry.point_site(x, y, pixels_of(map.disparity_q4[i]));
             if (!p_site) {
                 continue;
             }
@@ -72,6 +77,14 @@ std::vector<CloudPoint> triangulate(const PairGeometry &geometry, const DecodedM
         }
     }
     return points;
+}
+
+std::size_t count_points(const PairGeometry &geometry, const DecodedMap &map)
+{
+    return static_cast<std::size_t>(
+        std::count_if(map.disparity_q4.begin(), map.disparity_q4.end(), [&](std::uint16_t disparity_q4) {
+            return disparity_q4 != TSR_DISPARITY_INVALID && geometry.depth_m(pixels_of(disparity_q4));
+        }));
 }
 
 } // namespace tsr

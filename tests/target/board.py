@@ -24,7 +24,6 @@ MBEDTLS = pathlib.Path(os.environ.get("MBEDTLS_DIR") or SOURCE / ".deps/mbedtls"
 LIBJPEG = pathlib.Path(os.environ.get("LIBJPEG_DIR") or SOURCE / ".deps/libjpeg-turbo")
 TOOLS = ("cmake", "ninja", "arm-none-eabi-gcc", "arm-none-eabi-nm", "qemu-system-arm", "cc")
 EXIT_SKIPPED = 77
-WORKBENCH = ("workbench.c", "refinements.c", "codecs.c", "rectify.c", "seals.c")
 MARKERS = ("workbench_begin", "workbench_stop")
 
 
@@ -105,19 +104,14 @@ def build_plugin():
     return library
 
 
-def build_host_workbench(folder, names=WORKBENCH, layers=("base", "vision", "codec", "wire"), libraries=()):
-    """A workbench for the host, from the same sources; with sanitizers, so that the comparison also checks memory."""
-    sources = [path for layer in layers for path in sorted((SOURCE / "firmware" / layer).glob("*.c"))]
-    bench = SOURCE / "tests/target/workbench"
-    sources += [bench / name for name in (*names, "markers.c", "main_host.c")]
-    sources += [SOURCE / "hal/mps2/aes.c", MBEDTLS / "library/aes.c", MBEDTLS / "library/platform_util.c"]
-    includes = [SOURCE / "firmware" / layer / "include" for layer in layers]
-    includes += [bench, SOURCE / "hal/mps2/include", SOURCE / "hal/mps2/config", MBEDTLS / "include", MBEDTLS / "library"]
-    program = pathlib.Path(folder) / "workbench-host"
-    run(["cc", "-std=gnu11", "-O1", "-fno-strict-aliasing", "-fsanitize=address,undefined",
-         "-fno-sanitize-recover=all", '-DMBEDTLS_CONFIG_FILE="tsr_mbedtls_config.h"',
-         *[f"-I{path}" for path in includes], "-o", program, *sources, *libraries])
-    return program
+def build_on_host(program):
+    """A board's program for the host, from the same sources; with sanitizers, so that the comparison also checks memory."""
+    need_tools()
+    with build_lock("asan"):
+        if not (SOURCE / "build/asan/build.ninja").exists():
+            run(["cmake", "--preset", "asan"], cwd=SOURCE)
+        run(["cmake", "--build", SOURCE / "build/asan", "--target", program], timeout_s=600)
+    return SOURCE / "build/asan/bin" / program
 
 
 def run_image(image, words=(), cwd=None, timeout_s=120, options=(), machine=DEFAULT):

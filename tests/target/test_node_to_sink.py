@@ -25,7 +25,7 @@ STEP_LOG2 = 3  # of firmware/app/mps2_an386.c and of the workbench
 
 def expected_map(work):
     """What the host makes of the same pictures, the right one as the wing sends it."""
-    host = board.build_host_workbench(work)
+    host = board.build_on_host("workbench-host")
     left, right = (pictures.read_pgm(path)[2] for path in site_run.views(work / "scene"))
     folder = pictures.write_case(work / "host", bytes(len(left)), left, right)
     board.run([host, *SHAPE], cwd=folder)

@@ -28,8 +28,8 @@ def results(folder):
 
 def test():
     image = board.build("tarsier-workbench") / "tarsier-workbench.elf"
+    host = board.build_on_host("workbench-host")
     with tempfile.TemporaryDirectory() as work:
-        host = board.build_host_workbench(work)
         for name, folder, shape in pictures.aloe_cases(work) + pictures.data_cases(work):
             board.run([host, *shape], cwd=folder)
             expected = results(folder)

@@ -74,13 +74,65 @@ TEST(HostPly, WritesTheStatedBytes)
 {
     const Folder folder;
     const std::vector<CloudPoint> points{{1.0F, -2.0F, 0.5F, 10, 20, 255}, {0, 0, 3.0F, 1, 2, 3}};
-    write_ply(folder / "a.ply", points);
+    PlyWriter writer(folder / "a.ply", points.size());
+    writer.add({points.data(), 1});
+    writer.add({points.data() + 1, 1});
+    writer.complete();
     const std::string text = read_all(folder / "a.ply");
     const std::size_t body = text.find("end_header\n") + 11;
     EXPECT_EQ(text.rfind("ply\nformat binary_little_endian 1.0\n", 0), 0u);
     EXPECT_NE(text.find("element vertex 2\n"), std::string::npos);
     ASSERT_EQ(text.size() - body, 30u);
     EXPECT_EQ(text.substr(body, 15), std::string("\0\0\x80\x3f\0\0\0\xc0\0\0\0\x3f\x0a\x14\xff", 15));
+}
+
+TEST(HostPly, IsThereOnlyWithAllItsPoints)
+{
+    const Folder folder;
+    const std::vector<CloudPoint> points(3);
+    PlyWriter writer(folder / "a.ply", 2);
+    EXPECT_THROW(writer.add(points), std::logic_error);
+    writer.add({points.data(), 1});
+    EXPECT_THROW(writer.complete(), std::logic_error);
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.ply"));
+}
+
+TEST(HostPly, SamplesEvenly)
+{
+    const Folder folder;
+    std::vector<CloudPoint> points;
+    for (unsigned i = 0; i < 10; ++i) {
+        points.push_back({static_cast<float>(i) - 0.25F, -1e-3F, 7.5F, static_cast<std::uint8_t>(i), 200, 255});
+    }
+    PlyWriter writer(folder / "a.ply", points.size());
+    writer.add(points);
+    writer.complete();
+    EXPECT_EQ(sample_ply(folder / "a.ply", 10).points, points);
+    EXPECT_EQ(sample_ply(folder / "a.ply", 100).points, points);
+    const auto [of, some] = sample_ply(folder / "a.ply", 4);
+    EXPECT_EQ(of, 10u);
+    EXPECT_EQ(some, (std::vector<CloudPoint>{points[0], points[2], points[5], points[7]}));
+    EXPECT_TRUE(sample_ply(folder / "a.ply", 0).points.empty());
+}
+
+TEST(HostPly, RefusesWhatIsNotItsOwn)
+{
+    const Folder folder;
+    PlyWriter writer(folder / "a.ply", 1);
+    writer.add(std::vector<CloudPoint>(1));
+    writer.complete();
+    const std::string whole = read_all(folder / "a.ply");
+    const auto sample = [&](const std::string &content) {
+        write_file_atomically(folder / "b.ply", content);
+        sample_ply(folder / "b.ply", 1);
+    };
+    EXPECT_NO_THROW(sample(whole));
+    EXPECT_REFUSED(sample(""), "header");
+    EXPECT_REFUSED(sample("ply\n"), "header");
+    EXPECT_REFUSED(sample(whole.substr(0, whole.size() - 16)), "header");
+    EXPECT_REFUSED(sample(whole.substr(0, whole.size() - 1)), "size");
+    EXPECT_REFUSED(sample(whole + std::string(15, '\0')), "size");
+    EXPECT_REFUSED(sample_ply(folder / "none.ply", 1), "read");
 }
 
 TEST(HostColourMap, MatchesViridisAtKnownPlaces)

@@ -26,7 +26,7 @@ class Page : public ::testing::Test
     {
         run_.run();
         record_ = gather(run_.site, run_.simulation, run_.pictures, {}, {});
-        write_ply(folder_.path() / "cloud.ply", {});
+        PlyWriter(folder_.path() / "cloud.ply", 0).complete();
         std::filesystem::create_directory(folder_.path() / "maps");
     }
     nlohmann::json written()
@@ -96,7 +96,9 @@ TEST_F(Page, StaysSmallWhateverWasRun)
     for (std::size_t i = 0; i < cloud.size(); ++i) {
         cloud[i] = {static_cast<float>(i % 1000), static_cast<float>(i / 1000), 1.5F};
     }
-    write_ply(folder_.path() / "cloud.ply", cloud);
+    PlyWriter writer(folder_.path() / "cloud.ply", cloud.size());
+    writer.add(cloud);
+    writer.complete();
     write_noise(folder_.path() / "noise.png");
     for (std::size_t i = 0; i < kGalleryMax; ++i) {
         gallery_.push_back({&record_.maps[i], &run_.site.pairs[0], "newest"});

@@ -99,6 +99,7 @@ TEST(SinkGeometry, CloudSkipsInvalidAndTakesTheReferencesGray)
     map.disparity_q4[0] = TSR_DISPARITY_INVALID;
     const GrayImage reference = test::textured_image(pair);
     const auto points = triangulate(PairGeometry(pair), map, &reference);
+    EXPECT_EQ(count_points(PairGeometry(pair), map), points.size());
     ASSERT_EQ(points.size(), 32u * 24u - 1u);
     EXPECT_EQ(points[0].red, reference.pixels[1]);
     EXPECT_EQ(points[0].blue, reference.pixels[1]);

@@ -15,6 +15,7 @@
 #ifndef TSR_SINK_GEOMETRY_H
 #define TSR_SINK_GEOMETRY_H
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -53,6 +54,9 @@ class PairGeometry
  * reference has the map's size or is null.
  */
 std::vector<CloudPoint> triangulate(const PairGeometry &geometry, const DecodedMap &map, const GrayImage *reference);
+
+/* How many points triangulate() makes of it. */
+std::size_t count_points(const PairGeometry &geometry, const DecodedMap &map);
 
 } // namespace tsr
 
