@@ -48,7 +48,7 @@ Lateness play(const Options &options, const std::string &label, Simulation &simu
     if (!options.speed.empty()) {
         pace.emplace(parse_speed(options.speed));
         simulation.keep_pace([&](std::uint64_t next_us) {
-            pace->wait_for(next_us, [&](std::uint64_t reached_us) {
+            return pace->wait_for(next_us, [&](std::uint64_t reached_us) {
                 progress.waiting(reached_us);
                 return stop_signal() == 0;
             });
@@ -144,8 +144,10 @@ void print_result(const fs::path &out, const RunOutcome &outcome)
         }
     }
     if (const auto &baseline = summary.at("baseline"); !baseline.is_null()) {
-        std::printf("a baseline: in the place of maps both views, as JPEG of quality %d\n",
-                    baseline.at("jpeg_quality").get<int>());
+        std::printf(
+            "a baseline: in the place of maps both views, as JPEG of quality %d; %d captures failed, by their camera "
+            "or for want of room in a message\n",
+            baseline.at("jpeg_quality").get<int>(), summary.at("totals").at("captures_failed").get<int>());
     }
     std::printf("%.1f s of virtual time in %.1f s; results in %s, look at %s\n",
                 summary.at("virtual_time_s").get<double>(), summary.at("wall_time_s").get<double>(), out.c_str(),

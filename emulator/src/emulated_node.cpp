@@ -116,6 +116,7 @@ void EmulatedNode::add_camera(bool right)
         at(time_us, [this, right] { (right ? right_ : left_)->finish(); });
     };
     owner.done = [this, right](tsr_status status, std::uint64_t time_us) {
+        captures_watching_ += phase() == TSR_PHASE_WATCHING ? 1 : 0;
         tsr_node_on_camera(node_.get(), right, status, time_us);
         attend();
     };
@@ -364,7 +365,7 @@ EnergyMj EmulatedNode::energy() const
 
 double EmulatedNode::active_mj(std::uint64_t heard_us) const
 {
-    return tsr::active_mj(around_.power, times(), {heard_us, cpu_watching_us_, counters().frames_watched});
+    return tsr::active_mj(around_.power, times(), heard_us, {cpu_watching_us_, captures_watching_});
 }
 
 } // namespace tsr

@@ -91,12 +91,12 @@ EnergyMj energy_of(const PowerModel &model, const NodeTimes &times)
     return energy;
 }
 
-double active_mj(const PowerModel &model, const NodeTimes &times, const IdleTimes &idle)
+double active_mj(const PowerModel &model, const NodeTimes &times, std::uint64_t heard_us, const WatchTimes &watch)
 {
     NodeTimes active = times;
-    active.radio.receiving = std::min(times.radio.receiving, idle.heard_us);
-    active.cpu_busy_us = rest_of(times.cpu_busy_us, idle.cpu_watching_us);
-    active.captures = rest_of(times.captures, idle.captures_watching);
+    active.radio.receiving = std::min(times.radio.receiving, heard_us);
+    active.cpu_busy_us = rest_of(times.cpu_busy_us, watch.cpu_us);
+    active.captures = rest_of(times.captures, watch.captures);
     const EnergyMj energy = energy_of(model, active);
     return energy.radio.transmit + energy.radio.assess + energy.radio.acknowledge + energy.radio.receive +
            energy.cpu.run + energy.camera.start + energy.camera.expose + energy.camera.read;

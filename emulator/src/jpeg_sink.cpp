@@ -1,6 +1,7 @@
 /* The sink of baseline nodes. SPDX-License-Identifier: Apache-2.0 */
 #include "tsr/emulator/jpeg_sink.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <stdexcept>
@@ -21,6 +22,8 @@ namespace tsr
 
 namespace
 {
+
+constexpr std::size_t kFinishedMax = 16; /* messages a node may still be asking about */
 
 std::string name_of(const tsr_message_header &header)
 {
@@ -83,50 +86,58 @@ std::vector<std::uint8_t> JpegSink::take_fragment(const std::uint8_t *bytes, std
     if (found == origins_.end()) {
         return {};
     }
-    Origin &origin = found->second;
-    if (origin.has_finished && origin.finished_id == fragment.message_id) {
-        if (!fragment.poll) {
-            return {};
-        }
-    } else {
-        if (!tsr_reassembly_matches(&origin.assembly, &fragment)) {
-            origin.message.assign(std::size_t{fragment.count} * TSR_FRAGMENT_PIECE_MAX, 0);
-            tsr_reassembly_init(&origin.assembly, origin.message.data(), origin.message.size());
-            tsr_reassembly_begin(&origin.assembly, &fragment);
-        }
-        const tsr_status added = tsr_reassembly_add(&origin.assembly, &fragment);
-        if (added != TSR_OK && (added != TSR_AGAIN || !fragment.poll)) {
-            return {};
-        }
-    }
-    const tsr_body_status status = judge(origin, fragment);
-    return status_fragment(origin.cipher, fragment.origin, ++counter_, status);
+    const auto status = judge(found->second, fragment);
+    return status ? status_fragment(found->second.cipher, fragment.origin, ++counter_, *status)
+                  : std::vector<std::uint8_t>();
 }
 
-/* The answer to a poll, or to the fragment that completes a message. */
-tsr_body_status JpegSink::judge(Origin &origin, const tsr_fragment &fragment)
+/* The answer to a poll, or to the fragment that completes a message; nothing to any other. */
+std::optional<tsr_body_status> JpegSink::judge(Origin &origin, const tsr_fragment &fragment)
 {
     tsr_body_status status{};
     status.message_id = fragment.message_id;
-    if (!origin.has_finished || origin.finished_id != fragment.message_id) {
-        const tsr_reassembly &whole = origin.assembly;
-        if (!tsr_reassembly_complete(&whole)) {
-            return tsr_body_status_of(&whole, TSR_DELIVERY_COMMITTED);
-        }
-        tsr_message_header header{};
-        std::size_t body_len = 0;
-        if (tsr_message_parse(whole.message, whole.message_len, whole.origin, whole.destination, &header) != TSR_OK ||
-            tsr_message_open(&header, &origin.cipher, whole.message, whole.message_len, &body_len) != TSR_OK) {
-            tsr_reassembly_begin(&origin.assembly, &fragment); /* from the start */
-            return tsr_body_status_of(&origin.assembly, TSR_DELIVERY_COMMITTED);
-        }
-        origin.finished_as = keep(header, {whole.message + TSR_MESSAGE_HEADER_LEN, body_len});
-        origin.finished_id = fragment.message_id;
-        origin.has_finished = true;
-        origin.assembly.count = 0;
+    const auto finished = std::find_if(origin.finished.begin(), origin.finished.end(),
+                                       [&](const auto &entry) { return entry.first == fragment.message_id; });
+    if (finished != origin.finished.end()) {
+        status.state = static_cast<std::uint8_t>(finished->second);
+        return fragment.poll ? std::optional(status) : std::nullopt;
     }
-    status.state = static_cast<std::uint8_t>(origin.finished_as);
-    return status;
+    if (!tsr_reassembly_matches(&origin.assembly, &fragment)) {
+        origin.message.assign(std::size_t{fragment.count} * TSR_FRAGMENT_PIECE_MAX, 0);
+        tsr_reassembly_init(&origin.assembly, origin.message.data(), origin.message.size());
+        tsr_reassembly_begin(&origin.assembly, &fragment);
+    }
+    const tsr_status added = tsr_reassembly_add(&origin.assembly, &fragment);
+    if (added == TSR_OK) {
+        const tsr_delivery state = finish(origin, fragment);
+        if (state != TSR_DELIVERY_MISSING) {
+            status.state = static_cast<std::uint8_t>(state);
+            return status;
+        }
+    } else if (added != TSR_AGAIN || !fragment.poll) {
+        return std::nullopt;
+    }
+    return tsr_body_status_of(&origin.assembly, TSR_DELIVERY_COMMITTED);
+}
+
+/* Of a whole message. MISSING: it is not authentic, and is asked for from the start. */
+tsr_delivery JpegSink::finish(Origin &origin, const tsr_fragment &fragment)
+{
+    const tsr_reassembly &whole = origin.assembly;
+    tsr_message_header header{};
+    std::size_t body_len = 0;
+    if (tsr_message_parse(whole.message, whole.message_len, whole.origin, whole.destination, &header) != TSR_OK ||
+        tsr_message_open(&header, &origin.cipher, whole.message, whole.message_len, &body_len) != TSR_OK) {
+        tsr_reassembly_begin(&origin.assembly, &fragment);
+        return TSR_DELIVERY_MISSING;
+    }
+    const tsr_delivery state = keep(header, {whole.message + TSR_MESSAGE_HEADER_LEN, body_len});
+    origin.finished.emplace_back(fragment.message_id, state);
+    if (origin.finished.size() > kFinishedMax) {
+        origin.finished.pop_front();
+    }
+    origin.assembly.count = 0;
+    return state;
 }
 
 tsr_delivery JpegSink::keep(const tsr_message_header &header, std::span<const std::uint8_t> body)

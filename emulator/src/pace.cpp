@@ -38,7 +38,7 @@ Pace::Clock Pace::wall_clock()
 
 Pace::Pace(double speed, Clock clock) : speed_(speed), clock_(std::move(clock)), start_us_(clock_.now_us()) {}
 
-void Pace::wait_for(std::uint64_t time_us, const std::function<bool(std::uint64_t)> &go_on)
+bool Pace::wait_for(std::uint64_t time_us, const std::function<bool(std::uint64_t)> &go_on)
 {
     const auto due_us = static_cast<std::uint64_t>(std::ceil(static_cast<double>(time_us) / speed_));
     std::uint64_t passed_us = clock_.now_us() - start_us_;
@@ -49,9 +49,10 @@ void Pace::wait_for(std::uint64_t time_us, const std::function<bool(std::uint64_
         passed_us = clock_.now_us() - start_us_;
         const auto reached_us = static_cast<std::uint64_t>(static_cast<double>(passed_us) * speed_);
         if (!go_on(std::min(reached_us, time_us))) {
-            return;
+            return false;
         }
     }
+    return true;
 }
 
 double parse_speed(const std::string &text)

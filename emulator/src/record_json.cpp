@@ -179,6 +179,7 @@ Json json_of(const LinkRecord &link)
             {"hops", link.hops},
             {"frames", data.frames},
             {"received", link.tally.received},
+            {"received_bytes", link.tally.received_bytes},
             {"acknowledged", link.tally.acknowledged},
             {"acknowledgements", link.tally.acknowledgements.frames},
             {"success", data.frames > 0 ? Json(rounded(success, 4)) : Json()},

@@ -9,6 +9,9 @@
 #include <charconv>
 #include <cmath>
 #include <sstream>
+#include <utility>
+
+#include <nlohmann/json.hpp>
 
 #include "tsr/hal/recorded_source.h"
 #include "tsr/host/input_error.h"
@@ -30,7 +33,13 @@ SceneEvent read_event(const std::string &line, const std::string &place)
     if (error != std::errc() || *end != ',' || !(time_s >= 0 && time_s <= kEventTimeMaxS)) {
         throw InputError(place, "time_s", "is not a time in seconds before a comma");
     }
-    return {static_cast<std::uint64_t>(std::llround(time_s * 1e6)), std::string(end + 1)};
+    std::string what(end + 1, line.data() + line.size());
+    try {
+        (void)nlohmann::json(what).dump(); /* as the page will */
+    } catch (const nlohmann::json::exception &) {
+        throw InputError(place, "what", "is not UTF-8 text");
+    }
+    return {static_cast<std::uint64_t>(std::llround(time_s * 1e6)), std::move(what)};
 }
 
 /* Another file of this name is somebody else's, or a sink's. */
@@ -44,10 +53,17 @@ std::vector<SceneEvent> read_events(const std::filesystem::path &site_file)
     }
     std::istringstream text(read_text_file(file));
     std::string line;
-    if (!std::getline(text, line) || line != kEventsHead) {
+    const auto next_line = [&] {
+        const bool there = static_cast<bool>(std::getline(text, line));
+        if (there && line.ends_with('\r')) {
+            line.pop_back();
+        }
+        return there;
+    };
+    if (!next_line() || line != kEventsHead) {
         return events;
     }
-    for (int number = 2; std::getline(text, line); ++number) {
+    for (int number = 2; next_line(); ++number) {
         events.push_back(read_event(line, file.string() + ":" + std::to_string(number)));
     }
     std::stable_sort(events.begin(), events.end(),

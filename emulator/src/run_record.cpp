@@ -27,13 +27,12 @@ int hops_of(const Site &site, const SiteNode &node)
     return hops;
 }
 
-/* How long each node received what was for it. */
+/* Time on air of what each node got of the frames for it. */
 std::map<std::uint16_t, std::uint64_t> times_heard_us(const Traffic &traffic)
 {
     std::map<std::uint16_t, std::uint64_t> times;
     for (const auto &[ends, tally] : traffic.links()) {
-        const FrameTally data = tally.data();
-        times[ends.second] += (data.bytes + data.frames * kPhyHeaderLen) * kOctetUs;
+        times[ends.second] += (tally.received_bytes + tally.received * kPhyHeaderLen) * kOctetUs;
     }
     return times;
 }
@@ -67,8 +66,9 @@ std::vector<NodeRecord> gather_nodes(const Site &site, const Simulation &simulat
         record.air = simulation.air_tally(i);
         record.energy = node.energy();
         record.active_mj = node.active_mj(heard_us[node.id()]);
-        const double powered_us = static_cast<double>(node.times().total_us);
-        record.mean_uw = powered_us > 0 ? record.energy.total() / powered_us * 1e9 : 0;
+        record.powered_us = node.times().total_us;
+        record.mean_uw =
+            record.powered_us > 0 ? record.energy.total() / static_cast<double>(record.powered_us) * 1e9 : 0;
         record.life = battery_life(site.battery, record.mean_uw);
         record.work_units = node.work_units();
         record.arena_len = node.arena_len();
@@ -230,7 +230,7 @@ void digest_lives(RunDigest &digest, const std::vector<NodeRecord> &nodes)
 {
     std::vector<double> lives;
     for (const NodeRecord &node : nodes) {
-        if (node.site->role == Role::gateway) {
+        if (node.site->role == Role::gateway || node.powered_us == 0) {
             continue;
         }
         if (digest.shortest_life == kNodeNone || node.life.days < digest.shortest_life_days) {

@@ -52,7 +52,7 @@ class PictureSink : public RunSink
     }
 
     SinkLink &link() override { return sink_; }
-    void finish() override { write_ply(cloud_, {}); }
+    void finish() override { PlyWriter(cloud_, 0).complete(); }
     std::vector<ReceivedMap> maps(const Simulation &simulation, Pictures &) override
     {
         std::vector<ReceivedMap> maps;

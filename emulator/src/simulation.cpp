@@ -142,8 +142,9 @@ void Simulation::run(const Progress &progress)
         if (queue_.next_us() > played_us_ && quiet()) {
             break;
         }
-        if (pace_) {
-            pace_(queue_.next_us());
+        if (pace_ && !pace_(queue_.next_us())) {
+            stopped_ = true;
+            break;
         }
         queue_.run_next();
         if (progress && !progress(queue_.now_us(), played_us_)) {

@@ -115,6 +115,7 @@ void Traffic::count(const AirFrame &frame, std::uint16_t sender, std::uint16_t r
     ++kind.frames;
     kind.bytes += frame.psdu_len;
     link.received += frame.lost_at == 0 ? 1 : 0;
+    link.received_bytes += frame.lost_at == 0 ? frame.psdu_len : 0;
 }
 
 void Traffic::hear_sink(std::uint64_t time_us, const std::vector<std::uint8_t> &answer)

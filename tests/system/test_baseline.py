@@ -31,7 +31,7 @@ def near(a, b, relative, absolute=0.0):
 def active_mj(node, links):
     """docs/energy.md, equation (3), from nodes.csv and links.csv."""
     heard = [link for link in links if link["to"] == node["id"]]
-    heard_us = sum(OCTET_US * (int(link["bytes"]) + PHY_HEADER * int(link["frames"])) for link in heard)
+    heard_us = sum(OCTET_US * (int(link["received_bytes"]) + PHY_HEADER * int(link["received"])) for link in heard)
     radio = sum(float(node[f"energy_mj_radio_{state}"]) for state in ("transmit", "assess", "acknowledge"))
     cpu = float(node["energy_mj_cpu_run"])
     watching_us = float(node["work_change_units"]) * CHANGE_INSTRUCTIONS * CYCLES / MHZ

@@ -35,8 +35,8 @@ struct BaselineRun {
           sink(keys, folder.path()), simulation(site, keys, pictures, sink, baseline)
     {
     }
-    /* Restarts the sink after so many events. */
-    void run(std::uint64_t restart_at = UINT64_MAX)
+    /* Restarts the sink after so many events; returns how many there were. */
+    std::uint64_t run(std::uint64_t restart_at = UINT64_MAX)
     {
         std::uint64_t events = 0;
         simulation.run([&](std::uint64_t, std::uint64_t) {
@@ -45,6 +45,7 @@ struct BaselineRun {
             }
             return true;
         });
+        return events;
     }
     const EmulatedNode &binocular() const { return *simulation.nodes().back(); }
     GrayImage picture(const JpegSink::Received &received, const char *side) const
@@ -112,13 +113,17 @@ TEST(Baseline, LostFramesAreAskedForAgain)
 TEST(Baseline, ARestartedSinkForgetsOnlyWhatItHasNotAcknowledged)
 {
     BaselineRun whole(one_pair(), {});
-    whole.run();
-    for (std::uint64_t at = 100; at < 1000; at += 50) {
+    const std::uint64_t events = whole.run();
+    const std::uint32_t never_again = whole.binocular().sender_counters().fragments_again;
+    unsigned in_a_message = 0;
+    for (std::uint64_t at = 0; at < events; at += events / 40) {
         BaselineRun run(one_pair(), {});
         run.run(at);
         expect_both_views_of_the_change(run);
         EXPECT_EQ(run.sink.restarts(), 1u);
+        in_a_message += run.binocular().sender_counters().fragments_again > never_again ? 1 : 0;
     }
+    EXPECT_GT(in_a_message, 3u); /* what was being put together is asked for again */
 }
 
 TEST(Baseline, CodingTakesTheProcessorItsTime)

@@ -64,14 +64,14 @@ TEST(Energy, ActiveIsWhatChangesCost)
     const double radio = 1.92 + 0.9795 + 0.5838 + 5.877; /* the last: 6.53 mA 3 V 0.3 s */
     const double cpu = 14.976;                           /* 3.328 mA 3 V 1.5 s */
     const double cameras = 0.28;                         /* 2 mW, 4 times 35 ms */
-    EXPECT_NEAR(active_mj(PowerModel{}, ten_seconds(), {300'000, 500'000, 2}), radio + cpu + cameras, kExact);
+    EXPECT_NEAR(active_mj(PowerModel{}, ten_seconds(), 300'000, {500'000, 2}), radio + cpu + cameras, kExact);
 }
 
 TEST(Energy, ANodeThatOnlyWatchesIsNotActive)
 {
     NodeTimes times = ten_seconds();
     times.radio = {0, 0, 0, 0, 10'000'000, 0};
-    EXPECT_EQ(active_mj(PowerModel{}, times, {0, times.cpu_busy_us, times.captures}), 0);
+    EXPECT_EQ(active_mj(PowerModel{}, times, 0, {times.cpu_busy_us, times.captures}), 0);
 }
 
 TEST(Energy, ABoardWithoutCamerasHasNoStandbyOfThem)

@@ -104,12 +104,28 @@ TEST(Pace, IsAskedBeforeEachEventAndChangesNothing)
         EXPECT_GE(next_us, latest_us);
         latest_us = next_us;
         ++asked;
+        return true;
     });
     paced.run();
     EXPECT_EQ(asked, paced.events);
     EXPECT_EQ(paced.events, plain.events);
     EXPECT_EQ(latest_us, paced.simulation.duration_us());
     EXPECT_EQ(paced.simulation.duration_us(), plain.simulation.duration_us());
+}
+
+/* Whoever is stopped while waiting has not been there. */
+TEST(Pace, AStopInAWaitEndsTheRunBeforeTheEvent)
+{
+    test::MemoryRun run(test::short_site());
+    std::uint64_t refused_us = 0;
+    run.simulation.keep_pace([&](std::uint64_t next_us) {
+        refused_us = next_us;
+        return next_us < test::kSceneChangeUs;
+    });
+    run.run();
+    EXPECT_TRUE(run.simulation.stopped());
+    EXPECT_GE(refused_us, test::kSceneChangeUs);
+    EXPECT_LT(run.simulation.duration_us(), test::kSceneChangeUs);
 }
 
 TEST(Pace, ReadsSpeeds)

@@ -22,7 +22,7 @@ Site site_in(const Folder &folder)
 TEST(RecordedPictures, EventsBesideTheSiteAreInOrderOfTime)
 {
     const Folder folder;
-    folder.put("events.csv", "time_s,what\n12.000,the person leaves\n0.25,the person comes in, \"late\"\n");
+    folder.put("events.csv", "time_s,what\r\n12.000,the person leaves\r\n0.25,the person comes in, \"late\"\n");
     const Site site = site_in(folder);
     const auto events = RecordedPictures(site).events();
     ASSERT_EQ(events.size(), 2u);
@@ -53,6 +53,15 @@ TEST(RecordedPictures, ALineThatIsNoEventIsRefused)
         const std::string error = test::refusal([&] { RecordedPictures pictures(site); });
         EXPECT_NE(error.find("events.csv:3: time_s"), std::string::npos) << line << ": " << error;
     }
+}
+
+TEST(RecordedPictures, TextThatNoPageCanShowIsRefused)
+{
+    const Folder folder;
+    folder.put("events.csv", "time_s,what\n1,caf\xe9\n");
+    const Site site = site_in(folder);
+    const std::string error = test::refusal([&] { RecordedPictures pictures(site); });
+    EXPECT_NE(error.find("events.csv:2: what: is not UTF-8"), std::string::npos) << error;
 }
 
 } // namespace

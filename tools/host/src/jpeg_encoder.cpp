@@ -43,6 +43,7 @@ class Writer
     bool encode(tsr_gray_view image, int quality)
     {
         if (setjmp(errors_.jump) != 0) {
+            bytes_ = nullptr; /* libjpeg may have given it back */
             return false;
         }
         jpeg_create_compress(&info_);

@@ -20,7 +20,7 @@ namespace
 constexpr double kPi = std::numbers::pi;
 constexpr double kSunDegreesPerHour = 15;
 
-/* Steps of height from one place of a ring to the next: neighbours are far apart, and every height occurs once. */
+/* Levels of height from one place of a ring to the next; without a common factor, so that every level occurs once. */
 int height_stride(int count)
 {
     for (const int stride : {7, 3, 5, 11}) {

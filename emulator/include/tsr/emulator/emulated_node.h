@@ -89,7 +89,7 @@ class EmulatedNode
     const std::array<std::uint64_t, TSR_WORK_COUNT> &work_units() const { return work_units_; }
     NodeTimes times() const; /* with power, until now */
     EnergyMj energy() const;
-    /* Of what was done because of changes, mJ; heard_us: time on air of frames sent to this node. */
+    /* Of what was done because of changes, mJ; heard_us: time on air of frames that this node got. */
     double active_mj(std::uint64_t heard_us) const;
 
   private:
@@ -128,7 +128,8 @@ class EmulatedNode
     std::uint64_t timer_at_us_ = UINT64_MAX; /* the MAC timer that is scheduled */
     std::uint64_t cpu_busy_us_ = 0;
     std::uint64_t cpu_watching_us_ = 0; /* of that, comparing frames with the background */
-    CodedViews views_;                  /* of a baseline node, being coded */
+    std::uint64_t captures_watching_ = 0;
+    CodedViews views_; /* of a baseline node, being coded */
     std::uint64_t coding_left_us_ = 0;
     std::array<std::uint64_t, TSR_WORK_COUNT> work_units_{};
     tsr_node_phase phase_ = TSR_PHASE_IDLE;

@@ -93,16 +93,16 @@ std::uint64_t instructions_time_us(const PowerModel &model, double instructions)
 /* A part's standby or sleep is what its other states leave of total_us, at least nothing. */
 EnergyMj energy_of(const PowerModel &model, const NodeTimes &times);
 
-/* What a node does whatever happens, or that NodeTimes does not tell. */
-struct IdleTimes {
-    std::uint64_t heard_us = 0;        /* on air of frames to this node: received for a reason, not in idle listening */
-    std::uint64_t cpu_watching_us = 0; /* comparing frames with the background */
-    std::uint64_t captures_watching = 0;
+/* Of NodeTimes, what a node does whatever happens. */
+struct WatchTimes {
+    std::uint64_t cpu_us = 0; /* comparing frames with the background */
+    std::uint64_t captures = 0;
 };
 
 /* mJ of what was done because of changes: frames sent, heard and acknowledged, captures of woken pairs, and the
- * processor but for watching. Idle listening, watching, standby and sleep are not in it. docs/energy.md, eq. (3) */
-double active_mj(const PowerModel &model, const NodeTimes &times, const IdleTimes &idle);
+ * processor but for watching. Idle listening, watching, standby and sleep are not in it. heard_us: time on air of
+ * frames that the node got; it is part of radio.receiving. docs/energy.md, eq. (3) */
+double active_mj(const PowerModel &model, const NodeTimes &times, std::uint64_t heard_us, const WatchTimes &watch);
 
 } // namespace tsr
 

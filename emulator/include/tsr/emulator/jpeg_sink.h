@@ -11,10 +11,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tsr/emulator/sink_link.h"
@@ -56,13 +59,12 @@ class JpegSink : public SinkLink
         tsr_cipher cipher{};
         std::vector<std::uint8_t> message; /* being put together */
         tsr_reassembly assembly{};
-        bool has_finished = false;
-        std::uint16_t finished_id = 0; /* the last one */
-        tsr_delivery finished_as = TSR_DELIVERY_COMMITTED;
+        std::deque<std::pair<std::uint16_t, tsr_delivery>> finished; /* message ids, the newest last */
     };
 
     std::vector<std::uint8_t> take_fragment(const std::uint8_t *bytes, std::size_t len);
-    tsr_body_status judge(Origin &origin, const tsr_fragment &fragment);
+    std::optional<tsr_body_status> judge(Origin &origin, const tsr_fragment &fragment);
+    tsr_delivery finish(Origin &origin, const tsr_fragment &fragment);
     tsr_delivery keep(const tsr_message_header &header, std::span<const std::uint8_t> body);
 
     std::filesystem::path folder_;

@@ -33,9 +33,9 @@ class Pace
     /* Virtual time 0 is now. speed: virtual seconds a second, above 0. */
     explicit Pace(double speed, Clock clock = wall_clock());
 
-    /* Returns when virtual time may be time_us. After each nap go_on is told how far it may be by now; false returns
-     * at once. */
-    void wait_for(std::uint64_t time_us, const std::function<bool(std::uint64_t)> &go_on);
+    /* True when virtual time may be time_us. After each nap go_on is told how far it may be by now; if it says false,
+     * false at once. */
+    bool wait_for(std::uint64_t time_us, const std::function<bool(std::uint64_t)> &go_on);
 
     /* How long after its time something was begun, s of the wall clock: the longest, and the latest. */
     double worst_late_s() const { return worst_late_s_; }

@@ -66,7 +66,8 @@ struct NodeRecord {
     AirTally air;
     EnergyMj energy;
     double active_mj = 0; /* of that, what changes have cost */
-    double mean_uw = 0;
+    std::uint64_t powered_us = 0;
+    double mean_uw = 0; /* of that time */
     BatteryLife life;
     std::array<std::uint64_t, TSR_WORK_COUNT> work_units{};
     std::size_t arena_len = 0;

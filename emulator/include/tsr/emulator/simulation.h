@@ -56,8 +56,8 @@ class Simulation
 
     /* Every frame on air goes there. capture is kept. Call before run(). */
     void record_air(PcapngCapture &capture) { capture_ = &capture; }
-    /* Called before each event with its time; may wait, and changes nothing else. Call before run(). */
-    void keep_pace(std::function<void(std::uint64_t)> pace) { pace_ = std::move(pace); }
+    /* Called before each event with its time; may wait; false ends the run before it. Call before run(). */
+    void keep_pace(std::function<bool(std::uint64_t)> pace) { pace_ = std::move(pace); }
     void run(const Progress &progress);
 
     std::uint64_t duration_us() const { return queue_.now_us(); }
@@ -104,7 +104,7 @@ class Simulation
     bool stopped_ = false;
     mutable std::size_t last_busy_ = 0;       /* a node's index, where quiet() looks first */
     PcapngCapture *capture_ = nullptr;        /* may stay null */
-    std::function<void(std::uint64_t)> pace_; /* may stay empty */
+    std::function<bool(std::uint64_t)> pace_; /* may stay empty */
 };
 
 } // namespace tsr

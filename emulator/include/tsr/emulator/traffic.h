@@ -55,6 +55,7 @@ struct FrameTally {
 struct LinkTally {
     std::array<FrameTally, kMessageNames.size()> kinds{}; /* data frames, as kMessageNames */
     std::uint64_t received = 0;                           /* of these, got by the node they are for */
+    std::uint64_t received_bytes = 0;                     /* PSDU octets of them */
     std::uint64_t acknowledged = 0;                       /* of these, the sender heard the acknowledgement */
     FrameTally acknowledgements;                          /* sent for them, the other way */
 
