@@ -56,11 +56,12 @@ OutFolder::OutFolder(std::filesystem::path folder) : folder_(std::move(folder))
 
 void OutFolder::refuse_foreign() const
 {
-    if (std::filesystem::exists(file(kMark))) {
+    std::error_code ignored;
+    if (std::filesystem::exists(file(kMark), ignored)) {
         return;
     }
     for (const char *name : kNames) {
-        if (std::filesystem::exists(file(name))) {
+        if (std::filesystem::exists(file(name), ignored)) {
             throw InputError(folder_.string(), "--out",
                              std::string("holds a ") + name +
                                  " that no run of the emulator made; choose another folder");

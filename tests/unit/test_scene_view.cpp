@@ -57,6 +57,28 @@ TEST(SceneView, WhatNoRayMeetsIsSky)
     EXPECT_GT(truth.depth_m.back(), 0);
 }
 
+/* Half way between a pose and the same turned by 180 degrees, matrices meet in nothing. */
+TEST(SceneView, AThingThatTurnsRoundWhileRowsAreReadIsSeen)
+{
+    World world;
+    const ObjectId door = world.add_object("door");
+    world.add(door, make_box({-3, -0.1F, -3}, {3, 0.1F, 5}, world.add_surface({})), [](std::uint64_t time_us) {
+        const float angle = time_us < 100'000 ? 0 : static_cast<float>(M_PI);
+        return Eigen::Affine3f(Eigen::AngleAxisf(angle, Eigen::Vector3f::UnitZ()));
+    });
+    const Geometry geometry(world);
+    RayCaster caster(geometry);
+    Camera camera = looking_down_y();
+    camera.readout_us = 200'000;
+    View view(geometry, camera);
+    view.render(caster, 0);
+    const Truth truth = view.truth(caster, 0);
+    for (const std::size_t row : {0u, 14u, 15u, 29u}) {
+        EXPECT_EQ(truth.objects[row * 40 + 19], door) << row;
+        EXPECT_NEAR(truth.depth_m[row * 40 + 19], 4.9, 0.01) << row;
+    }
+}
+
 /* A post between the sun and the floor: its shadow lies where geometry says. */
 TEST(SceneView, TheSunCastsShadows)
 {

@@ -56,6 +56,13 @@ RTCRay make_ray(const Eigen::Vector3f &origin, const Eigen::Vector3f &direction,
     return ray;
 }
 
+/* By more than a right angle. Embree goes from one pose to the other along their matrices, which half a turn apart
+ * leads through nothing: no ray has a way there. */
+bool turns_far(const Eigen::Affine3f &begin, const Eigen::Affine3f &end)
+{
+    return (begin.linear().transpose() * end.linear()).trace() < 1; /* 1 + 2 cos of the angle */
+}
+
 } // namespace
 
 /* Geometry ids within a structure are indices into World::bodies. */
@@ -174,7 +181,11 @@ void RayCaster::set_time(std::uint64_t time_us, std::uint32_t span_us)
     const World &world = *parts_->geometry->world;
     for (std::size_t i = 0; i < parts_->instances.size(); ++i) {
         const Body &body = world.bodies[parts_->geometry->movers[i].body];
-        const auto begin = world.pose_of(body, time_us), end = world.pose_of(body, time_us + span_us);
+        const auto end = world.pose_of(body, time_us + span_us);
+        auto begin = world.pose_of(body, time_us);
+        if (begin && end && turns_far(*begin, *end)) {
+            begin = end;
+        }
         RTCGeometry instance = parts_->instances[i];
         if (begin || end) {
             rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, (begin ? begin : end)->data());
