@@ -149,6 +149,11 @@ tsr_delivery JpegSink::keep(const tsr_message_header &header, std::span<const st
     const std::span left(parts.reference, parts.reference_len);
     const std::span right(parts.map, parts.map_len);
     const std::string name = name_of(header);
+    const bool reused =
+        std::any_of(received_.begin(), received_.end(), [&](const Received &earlier) { return earlier.name == name; });
+    if (reused) { /* by a node that has forgotten its counters: tarsier-sink refuses that too */
+        return TSR_DELIVERY_REFUSED;
+    }
     try {
         decode_gray_image(left, name + "-left.jpg");
         decode_gray_image(right, name + "-right.jpg");

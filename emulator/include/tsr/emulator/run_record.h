@@ -65,7 +65,7 @@ struct NodeRecord {
     tsr_sender_counters sender{};
     AirTally air;
     EnergyMj energy;
-    double active_mj = 0; /* of that, what changes have cost */
+    double active_mj = 0; /* of that, what was done because of changes */
     std::uint64_t powered_us = 0;
     double mean_uw = 0; /* of that time */
     BatteryLife life;
