@@ -11,11 +11,11 @@
 #include <optional>
 
 #include "progress_bar.h"
-#include "tsr/emulator/out_folder.h"
 #include "tsr/emulator/pace.h"
 #include "tsr/emulator/report.h"
 #include "tsr/emulator/run_sink.h"
 #include "tsr/emulator/simulation.h"
+#include "tsr/emulator/unfinished_run.h"
 #include "tsr/host/atomic_file.h"
 
 namespace tsr::app
@@ -38,6 +38,23 @@ void print_counts(const char *name, const nlohmann::ordered_json &counts)
                 counts.at("maps_made").get<int>(), counts.at("maps_withheld").get<int>(),
                 counts.at("maps_sent").get<int>(), counts.at("maps_received").get<int>(),
                 counts.at("maps_lost").get<int>());
+}
+
+/* What the cameras of a site see must not lie where the results go. */
+void refuse_inputs(const OutFolder &out, const Site &site)
+{
+    for (const SiteNode &node : site.nodes) {
+        for (const fs::path &folder : {node.frames, node.frames_right}) {
+            if (!folder.empty()) {
+                out.refuse_input(folder);
+            }
+        }
+    }
+    for (const SitePair &pair : site.pairs) {
+        if (!pair.truth.empty()) {
+            out.refuse_input(pair.truth);
+        }
+    }
 }
 
 /* To the end, or to a signal. */
@@ -69,6 +86,7 @@ void take_signals()
     struct sigaction action {
     };
     action.sa_handler = [](int number) { signal_taken = number; };
+    action.sa_flags = static_cast<int>(SA_RESETHAND); /* a second one ends the program at once */
     for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
         sigaction(number, &action, nullptr);
     }
@@ -94,15 +112,18 @@ RunOutcome run_site(const Options &options, const fs::path &folder, const std::s
     const std::optional<Baseline> baseline = baseline_of(options);
     const Site site = baseline ? baseline_site(of_maps) : of_maps;
     const auto start = std::chrono::steady_clock::now();
-    OutFolder out(folder);
-    write_site(out.file("site.toml"), site);
-    load_site(out.file("site.toml")); /* what the sink would refuse is refused here, by name */
-    write_keys(out.file("keys.toml"), keys);
-
     take_signals();
-    const auto sink = baseline ? start_jpeg_sink(keys, out) : start_map_sink(options.sink, site, out);
+    const OutFolder out(folder);
+    refuse_inputs(out, site);
+    UnfinishedRun run(out);
+    write_site(run.file("site.toml"), site);
+    load_site(run.file("site.toml")); /* what the sink would refuse is refused here, by name */
+    write_keys(run.file("keys.toml"), keys);
+
+    const SinkProgram program{options.sink, [] { return stop_signal() != 0; }};
+    const auto sink = baseline ? start_jpeg_sink(keys, run) : start_map_sink(program, site, run);
     Simulation simulation(site, keys, pictures, sink->link(), baseline);
-    PcapngCapture capture(out.file("capture.pcapng"));
+    PcapngCapture capture(run.file("capture.pcapng"));
     simulation.record_air(capture);
     RunOutcome outcome;
     outcome.late = play(options, label, simulation);
@@ -115,12 +136,12 @@ RunOutcome run_site(const Options &options, const fs::path &folder, const std::s
     outcome.summary = make_summary(record);
     const auto gallery = choose_maps(record);
     if (!baseline) {
-        write_truth_pictures(out.path(), gallery, pictures);
+        write_truth_pictures(run.path(), gallery, pictures);
     }
-    write_tables(out.path(), record);
-    write_page(out.path(), outcome.summary, record, gallery);
-    write_file_atomically(out.file("summary.json"), outcome.summary.dump(2) + "\n");
-    out.keep();
+    write_tables(run.path(), record);
+    write_page(run.path(), outcome.summary, record, gallery);
+    write_file_atomically(run.file("summary.json"), outcome.summary.dump(2) + "\n");
+    run.complete();
     return outcome;
 }
 

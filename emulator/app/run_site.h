@@ -29,7 +29,7 @@ struct RunOutcome {
     Lateness late;
 };
 
-/* From now on a signal asks for an end: the run then reports what it has. */
+/* From now on a signal asks for an end: the run then reports what it has. A second one ends the program. */
 void take_signals();
 /* The signal that asked; 0: none. */
 int stop_signal();

@@ -110,9 +110,10 @@ int run_sweep(const Options &options, const Settings &settings)
     }
     check_all(options, settings, runs);
 
-    OutFolder out(options.out);
-    out.keep(); /* each run keeps or clears its own folder */
     take_signals();
+    const OutFolder out(options.out);
+    out.refuse_input(options.site); /* it is read again for each run */
+    out.clear();
     report.planned = points.size();
     Lateness late;
     for (std::size_t i = 0; i < points.size() && stop_signal() == 0; ++i) {

@@ -19,6 +19,7 @@
 #include "tsr/emulator/pace.h"
 #include "tsr/emulator/preflight.h"
 #include "tsr/emulator/recorded_pictures.h"
+#include "tsr/emulator/run_sink.h"
 #include "tsr/host/input_error.h"
 
 namespace tsr::app
@@ -107,6 +108,9 @@ int run(const Options &options)
 {
     if (!options.speed.empty()) {
         parse_speed(options.speed); /* refused before anything is read */
+    }
+    if (!baseline_of(options)) {
+        check_program(options.sink);
     }
     const bool scenario = !options.site.empty() && options.pair.empty() && is_scenario_file(options.site);
     return scenario ? run_scenario(options) : run_recorded(options);

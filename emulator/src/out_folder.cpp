@@ -5,16 +5,20 @@
  */
 #include "tsr/emulator/out_folder.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 #include <utility>
+#include <vector>
 
 #include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
 
 #include "tsr/host/input_error.h"
+#include "tsr/host/paths.h"
 
 namespace tsr
 {
@@ -23,10 +27,11 @@ namespace
 {
 
 constexpr const char *kMark = "tarsier-run";
-constexpr std::array kNames = {"site.toml",   "keys.toml",  "sink.db",   "sink.db-wal",  "sink.db-shm",
-                               "sink.socket", "sink.log",   "sink.json", "summary.json", "capture.pcapng",
-                               "index.html",  "cloud.ply",  "maps",      "nodes.csv",    "links.csv",
-                               "maps.csv",    "events.csv", "sweep.csv", "runs",         "pictures"};
+constexpr const char *kUnfinished = "unfinished";
+constexpr std::array kNames = {"site.toml",  "keys.toml", "sink.db",      "sink.db-wal",    "sink.db-shm",
+                               "sink.log",   "sink.json", "summary.json", "capture.pcapng", "index.html",
+                               "cloud.ply",  "maps",      "nodes.csv",    "links.csv",      "maps.csv",
+                               "events.csv", "sweep.csv", "runs",         "pictures"};
 
 } // namespace
 
@@ -46,12 +51,11 @@ OutFolder::OutFolder(std::filesystem::path folder) : folder_(std::move(folder))
         close(lock_);
         throw InputError(folder_.string(), "--out", "another run writes there");
     }
-    try {
-        clear();
-    } catch (...) {
-        close(lock_);
-        throw;
-    }
+}
+
+OutFolder::~OutFolder()
+{
+    close(lock_);
 }
 
 void OutFolder::refuse_foreign() const
@@ -60,13 +64,34 @@ void OutFolder::refuse_foreign() const
     if (std::filesystem::exists(file(kMark), ignored)) {
         return;
     }
-    for (const char *name : kNames) {
+    std::vector<const char *> names(kNames.begin(), kNames.end());
+    names.push_back(kUnfinished);
+    for (const char *name : names) {
         if (std::filesystem::exists(file(name), ignored)) {
             throw InputError(folder_.string(), "--out",
                              std::string("holds a ") + name +
                                  " that no run of the emulator made; choose another folder");
         }
     }
+}
+
+void OutFolder::refuse_input(const std::filesystem::path &input) const
+{
+    std::vector<std::filesystem::path> removed{unfinished()};
+    std::transform(kNames.begin(), kNames.end(), std::back_inserter(removed),
+                   [this](const char *name) { return file(name); });
+    for (const std::filesystem::path &path : removed) {
+        if (lies_within(input, path)) {
+            throw InputError(input.string(), "--out",
+                             "is among the results of an earlier run in " + folder_.string() +
+                                 ", which this run would replace; choose another folder");
+        }
+    }
+}
+
+std::filesystem::path OutFolder::unfinished() const
+{
+    return file(kUnfinished);
 }
 
 void OutFolder::clear() const
@@ -80,19 +105,18 @@ void OutFolder::clear() const
     }
 }
 
-OutFolder::~OutFolder()
+void OutFolder::replace_by(const std::filesystem::path &from) const
 {
-    if (!kept_) {
-        std::error_code ignored;
-        for (const char *name : kNames) {
-            const bool says_why = std::strcmp(name, "sink.log") == 0 && std::filesystem::exists(file(name), ignored) &&
-                                  std::filesystem::file_size(file(name), ignored) > 0;
-            if (!says_why) {
-                std::filesystem::remove_all(file(name), ignored);
-            }
+    clear();
+    for (const char *name : kNames) {
+        std::error_code error;
+        if (std::filesystem::exists(from / name, error)) {
+            std::filesystem::rename(from / name, file(name), error);
+        }
+        if (error) {
+            throw InputError(file(name).string(), "rename", error.message());
         }
     }
-    close(lock_);
 }
 
 } // namespace tsr

@@ -2,10 +2,15 @@
 #include "tsr/emulator/run_sink.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <iterator>
+
+#include <unistd.h>
 
 #include "tsr/emulator/jpeg_sink.h"
 #include "tsr/emulator/sink_process.h"
+#include "tsr/host/input_error.h"
 #include "tsr/host/ply.h"
 
 namespace tsr
@@ -14,12 +19,25 @@ namespace tsr
 namespace
 {
 
+SinkProcess::Options options_of(const SinkProgram &sink, const UnfinishedRun &run)
+{
+    SinkProcess::Options options;
+    options.program = sink.program;
+    options.stopping = sink.stopping;
+    options.site = run.file("site.toml");
+    options.keys = run.file("keys.toml");
+    options.database = run.file("sink.db");
+    options.out = run.path();
+    options.log = run.file("sink.log");
+    options.lock = run.lock();
+    return options;
+}
+
 class MapSink : public RunSink
 {
   public:
-    MapSink(const std::filesystem::path &program, const Site &site, const OutFolder &out)
-        : site_(site), out_(out.path()), process_({program, out.file("site.toml"), out.file("keys.toml"),
-                                                   out.file("sink.db"), out.path(), out.file("sink.log")})
+    MapSink(const SinkProgram &sink, const Site &site, const UnfinishedRun &run)
+        : site_(site), out_(run.path()), process_(options_of(sink, run))
     {
     }
 
@@ -46,8 +64,8 @@ constexpr const char *kPictures = "pictures";
 class PictureSink : public RunSink
 {
   public:
-    PictureSink(const KeyRing &keys, const OutFolder &out)
-        : cloud_(out.file("cloud.ply")), sink_(keys, out.file(kPictures))
+    PictureSink(const KeyRing &keys, const UnfinishedRun &run)
+        : cloud_(run.file("cloud.ply")), sink_(keys, run.file(kPictures))
     {
     }
 
@@ -84,14 +102,21 @@ class PictureSink : public RunSink
 
 } // namespace
 
-std::unique_ptr<RunSink> start_map_sink(const std::filesystem::path &program, const Site &site, const OutFolder &out)
+void check_program(const std::filesystem::path &program)
 {
-    return std::make_unique<MapSink>(program, site, out);
+    if (access(program.c_str(), X_OK) != 0) {
+        throw InputError(program.string(), "run", std::strerror(errno));
+    }
 }
 
-std::unique_ptr<RunSink> start_jpeg_sink(const KeyRing &keys, const OutFolder &out)
+std::unique_ptr<RunSink> start_map_sink(const SinkProgram &sink, const Site &site, const UnfinishedRun &run)
 {
-    return std::make_unique<PictureSink>(keys, out);
+    return std::make_unique<MapSink>(sink, site, run);
+}
+
+std::unique_ptr<RunSink> start_jpeg_sink(const KeyRing &keys, const UnfinishedRun &run)
+{
+    return std::make_unique<PictureSink>(keys, run);
 }
 
 } // namespace tsr

@@ -5,19 +5,19 @@
  */
 #include "tsr/emulator/sink_process.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <stdexcept>
-#include <thread>
+#include <fstream>
+#include <iterator>
 #include <utility>
 
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
 #include <sys/socket.h>
-#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -35,10 +35,12 @@ namespace tsr
 namespace
 {
 
-constexpr int kConnectTries = 500; /* of 10 ms: a loaded machine may be slow to start it */
-constexpr int kAnswerTimeoutMs = 30'000;
-/* In a row, without one answer between them: then it is not killed, it cannot live. */
+constexpr std::chrono::seconds kAnswerTimeout{30}; /* a loaded machine may be slow to start it */
+constexpr std::chrono::seconds kAnswerTimeoutStopping{5};
+constexpr int kLookMs = 100; /* for a signal */
+/* In a row, without one answer between them: then it is not killed, it cannot live; and it will not answer. */
 constexpr unsigned kFailuresMax = 200;
+constexpr unsigned kSilencesMax = 3;
 
 /* Type and sequence of an encoded frame; type 0 if it is none. */
 tsr_link_frame decode_frame(const std::uint8_t *bytes, std::size_t len)
@@ -55,15 +57,27 @@ tsr_link_frame decode_frame(const std::uint8_t *bytes, std::size_t len)
     return {};
 }
 
+/* No path that begins with a hyphen is an option then. */
+std::string absolute_text(const std::filesystem::path &path)
+{
+    return std::filesystem::absolute(path).string();
+}
+
+/* What a program that has refused something said. */
+std::string last_line(const std::filesystem::path &log)
+{
+    std::ifstream file(log);
+    std::string last = "refuses its input";
+    for (std::string line; std::getline(file, line);) {
+        last = line.empty() ? last : line;
+    }
+    return last;
+}
+
 } // namespace
 
-SinkProcess::SinkProcess(Options options)
-    : options_(std::move(options)), socket_path_(options_.database.parent_path() / "sink.socket")
+SinkProcess::SinkProcess(Options options) : options_(std::move(options))
 {
-    if (socket_path_.string().size() >= sizeof(sockaddr_un::sun_path)) {
-        /* A Unix socket's path has 107 bytes at most; out folders may be deeper. */
-        socket_path_ = std::filesystem::path("/tmp") / ("tarsier-" + std::to_string(getpid()) + ".socket");
-    }
     start();
 }
 
@@ -72,31 +86,30 @@ SinkProcess::~SinkProcess()
     disconnect();
     if (pid_ > 0) {
         kill(pid_, SIGKILL);
-        reap(true);
+        int ignored = 0;
+        waitpid(pid_, &ignored, 0);
     }
-    std::error_code ignored;
-    std::filesystem::remove(socket_path_, ignored);
 }
 
 void SinkProcess::start()
 {
-    std::error_code ignored;
-    std::filesystem::remove(socket_path_, ignored);
-    const std::vector<std::string> words = {options_.program.string(),
-                                            options_.site.string(),
-                                            "--keys",
-                                            options_.keys.string(),
-                                            "--db",
-                                            options_.database.string(),
-                                            "--listen",
-                                            "unix:" + socket_path_.string(),
-                                            "--out",
-                                            options_.out.string(),
-                                            "--once"}; /* it ends with this process, however that ends */
-    std::vector<char *> argv;
-    for (const std::string &word : words) {
-        argv.push_back(const_cast<char *>(word.c_str())); /* posix_spawn does not change them */
+    int ends[2];
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+        throw InputError(options_.program.string(), "run", std::strerror(errno));
     }
+    socket_ = ends[0];
+    std::vector<std::string> words = {options_.program.string(),
+                                      absolute_text(options_.site),
+                                      "--keys",
+                                      absolute_text(options_.keys),
+                                      "--db",
+                                      absolute_text(options_.database),
+                                      "--listen",
+                                      "fd:" + std::to_string(ends[1]),
+                                      "--out",
+                                      absolute_text(options_.out)};
+    std::vector<char *> argv;
+    std::transform(words.begin(), words.end(), std::back_inserter(argv), [](std::string &word) { return word.data(); });
     argv.push_back(nullptr);
 
     posix_spawn_file_actions_t actions;
@@ -104,6 +117,9 @@ void SinkProcess::start()
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, options_.log.c_str(), O_WRONLY | O_CREAT | O_APPEND,
                                      0644);
     posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+    for (const int kept : {ends[1], options_.lock}) {
+        posix_spawn_file_actions_adddup2(&actions, kept, kept); /* the same number: open beyond exec */
+    }
     /* A process group of its own: a Ctrl-C is this program's to deal with. */
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
@@ -111,43 +127,25 @@ void SinkProcess::start()
     const int error = posix_spawn(&pid_, options_.program.c_str(), &actions, &attributes, argv.data(), environ);
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
+    close(ends[1]);
     if (error != 0) {
         pid_ = -1;
+        disconnect();
         throw InputError(options_.program.string(), "run", std::strerror(error));
     }
 }
 
-/* Notice a process that has ended; with wait, until it has. */
-void SinkProcess::reap(bool wait)
+/* After its end. */
+int SinkProcess::reap()
 {
     int status = 0;
-    if (pid_ <= 0 || waitpid(pid_, &status, wait ? 0 : WNOHANG) != pid_) {
-        return;
+    while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
     }
     pid_ = -1;
     if (WIFEXITED(status) && WEXITSTATUS(status) == kExitInput) {
-        throw InputError(options_.log.string(), "tarsier-sink", "refused its input; its last line says why");
+        throw InputError(options_.program.string(), "run", last_line(options_.log));
     }
-}
-
-bool SinkProcess::connect_socket()
-{
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    std::strncpy(address.sun_path, socket_path_.c_str(), sizeof(address.sun_path) - 1);
-    for (int attempt = 0; attempt < kConnectTries; ++attempt) {
-        reap(false);
-        if (pid_ <= 0) {
-            return false;
-        }
-        socket_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-        if (socket_ >= 0 && connect(socket_, reinterpret_cast<const sockaddr *>(&address), sizeof address) == 0) {
-            return true;
-        }
-        disconnect();
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    return false;
+    return status;
 }
 
 void SinkProcess::disconnect()
@@ -173,63 +171,70 @@ bool SinkProcess::send_all(const std::uint8_t *bytes, std::size_t len)
     return true;
 }
 
-bool SinkProcess::read_answer(std::uint16_t sequence, std::vector<std::uint8_t> &answer)
+bool SinkProcess::is_readable()
+{
+    using Clock = std::chrono::steady_clock;
+    const auto since = Clock::now();
+    bool stopping = false;
+    auto end = since + kAnswerTimeout;
+    while (Clock::now() < end) {
+        pollfd waiting{socket_, POLLIN, 0};
+        if (poll(&waiting, 1, kLookMs) > 0) {
+            return true;
+        }
+        if (!stopping && options_.stopping()) {
+            stopping = true;
+            end = std::min(end, Clock::now() + kAnswerTimeoutStopping);
+        }
+    }
+    silences_ += stopping ? kSilencesMax : 1;
+    return false;
+}
+
+bool SinkProcess::read_answer(std::uint16_t sequence)
 {
     tsr_link_decoder decoder;
     tsr_link_decoder_init(&decoder);
-    std::vector<std::uint8_t> bytes;
-    for (;;) {
-        pollfd waiting{socket_, POLLIN, 0};
-        const int ready = poll(&waiting, 1, kAnswerTimeoutMs);
-        if (ready < 0 && errno == EINTR) {
-            continue;
-        }
+    answer_.clear();
+    while (is_readable()) {
         std::uint8_t chunk[1024];
-        const ssize_t got = ready > 0 ? recv(socket_, chunk, sizeof chunk, 0) : 0;
+        const ssize_t got = recv(socket_, chunk, sizeof chunk, 0);
         if (got <= 0) {
             return false;
         }
         for (ssize_t i = 0; i < got; ++i) {
-            bytes.push_back(chunk[i]);
+            answer_.push_back(chunk[i]);
             tsr_link_frame frame{};
             const tsr_status status = tsr_link_decode(&decoder, chunk[i], &frame);
             if (status == TSR_OK && frame.type == TSR_LINK_ANSWER && frame.sequence == sequence) {
-                answer = std::move(bytes);
                 return true;
             }
         }
     }
+    return false;
 }
 
-bool SinkProcess::try_exchange(const std::uint8_t *frame, std::size_t len, std::vector<std::uint8_t> &answer)
+bool SinkProcess::ask(const std::uint8_t *frame, std::size_t len)
 {
-    const tsr_link_frame decoded = decode_frame(frame, len);
-    if (socket_ < 0) {
-        if (!connect_socket()) {
-            return false;
-        }
-        const bool is_hello = decoded.type == TSR_LINK_HELLO;
-        std::vector<std::uint8_t> ignored;
-        if (!is_hello && !hello_.empty() &&
-            (!send_all(hello_.data(), hello_.size()) ||
-             !read_answer(decode_frame(hello_.data(), hello_.size()).sequence, ignored))) {
-            return false;
-        }
-    }
-    return send_all(frame, len) && read_answer(decoded.sequence, answer);
+    return send_all(frame, len) && read_answer(decode_frame(frame, len).sequence);
 }
 
 std::vector<std::uint8_t> SinkProcess::exchange(const std::uint8_t *frame, std::size_t len)
 {
-    if (decode_frame(frame, len).type == TSR_LINK_HELLO) {
+    const bool is_hello = decode_frame(frame, len).type == TSR_LINK_HELLO;
+    if (is_hello) {
         hello_.assign(frame, frame + len);
     }
-    std::vector<std::uint8_t> answer;
-    while (!try_exchange(frame, len, answer)) {
+    for (;;) {
+        const bool greeted = is_hello || greeted_ || hello_.empty() || ask(hello_.data(), hello_.size());
+        if (greeted && ask(frame, len)) {
+            greeted_ = true;
+            failures_ = 0;
+            silences_ = 0;
+            return answer_;
+        }
         recover();
     }
-    failures_ = 0;
-    return answer;
 }
 
 void SinkProcess::restart()
@@ -237,43 +242,33 @@ void SinkProcess::restart()
     disconnect();
     if (pid_ > 0) {
         kill(pid_, SIGKILL); /* alive but silent is as good as dead */
-        reap(true);
+        reap();
     }
     ++restarts_;
+    greeted_ = false;
     start();
 }
 
 /* After a failure: only so often without an answer between. */
 void SinkProcess::recover()
 {
-    if (++failures_ > kFailuresMax) {
+    if (++failures_ > kFailuresMax || silences_ >= kSilencesMax) {
+        std::error_code ignored;
+        const bool said = std::filesystem::file_size(options_.log, ignored) > 0 && !ignored;
         throw InputError(options_.program.string(), "run",
-                         "does not answer; " + options_.log.string() + " may say why");
+                         "does not answer" + (said ? "; " + options_.log.string() + " may say why" : ""));
     }
     restart();
 }
 
-bool SinkProcess::try_finish()
-{
-    /* Connected means that it takes signals as requests from now on. */
-    if (socket_ < 0 && !connect_socket()) {
-        return false;
-    }
-    disconnect();
-    int status = 0;
-    kill(pid_, SIGTERM);
-    while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
-    }
-    pid_ = -1;
-    if (WIFEXITED(status) && WEXITSTATUS(status) == kExitInput) {
-        throw InputError(options_.log.string(), "tarsier-sink", "could not export; its last line says why");
-    }
-    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
-}
-
 void SinkProcess::finish()
 {
-    while (!try_finish()) {
+    for (;;) {
+        disconnect(); /* it exports and ends */
+        const int status = reap();
+        if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
+            return;
+        }
         recover();
     }
 }

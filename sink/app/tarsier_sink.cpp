@@ -41,7 +41,8 @@ void declare(CLI::App &app, Options &options)
     app.add_option("SITE", options.site, "site.toml")->required();
     app.add_option("--keys", options.keys, "key file, mode 0600");
     app.add_option("--db", options.database, "SQLite file; created if absent")->required();
-    app.add_option("--listen", options.listen, "unix:PATH, tcp:HOST:PORT or serial:DEVICE:BAUD");
+    app.add_option("--listen", options.listen,
+                   "unix:PATH, tcp:HOST:PORT, serial:DEVICE:BAUD, or fd:NUMBER, a connected socket");
     app.add_option("--out", options.out, "folder for cloud.ply, maps/ and sink.json")->required();
     app.add_flag("--export-only", options.export_only, "write --out from --db and stop");
     app.add_flag("--once", options.once, "stop when the last gateway has disconnected");

@@ -115,13 +115,6 @@ speed_t speed_of(const ListenAddress &address)
     refuse(address, "baud", std::to_string(address.baud) + " is not one of 9600 .. 921600, 1000000");
 }
 
-} // namespace
-
-Descriptor open_listener(const ListenAddress &address)
-{
-    return address.kind == ListenAddress::Kind::tcp ? listen_tcp(address) : listen_unix(address);
-}
-
 Descriptor open_serial(const ListenAddress &address)
 {
     const speed_t speed = speed_of(address);
@@ -141,6 +134,37 @@ Descriptor open_serial(const ListenAddress &address)
         refuse(address, "baud");
     }
     return port;
+}
+
+Descriptor take_inherited(const ListenAddress &address)
+{
+    int type = 0;
+    socklen_t len = sizeof type;
+    if (::getsockopt(address.descriptor, SOL_SOCKET, SO_TYPE, &type, &len) != 0) {
+        refuse(address, "number");
+    }
+    sockaddr_storage peer{};
+    len = sizeof peer;
+    if (type != SOCK_STREAM || ::getpeername(address.descriptor, reinterpret_cast<sockaddr *>(&peer), &len) != 0) {
+        refuse(address, "number", "is not a connected stream socket");
+    }
+    Descriptor link(address.descriptor);
+    if (::fcntl(link.get(), F_SETFL, O_NONBLOCK) != 0 || ::fcntl(link.get(), F_SETFD, FD_CLOEXEC) != 0) {
+        refuse(address, "number");
+    }
+    return link;
+}
+
+} // namespace
+
+Descriptor open_listener(const ListenAddress &address)
+{
+    return address.kind == ListenAddress::Kind::tcp ? listen_tcp(address) : listen_unix(address);
+}
+
+Descriptor open_link(const ListenAddress &address)
+{
+    return address.kind == ListenAddress::Kind::serial ? open_serial(address) : take_inherited(address);
 }
 
 } // namespace tsr

@@ -18,8 +18,9 @@ namespace tsr
  * a sink that died is replaced; one that is in use is refused. Throws InputError. */
 Descriptor open_listener(const ListenAddress &address);
 
-/* A serial port, raw and non-blocking. Throws InputError. */
-Descriptor open_serial(const ListenAddress &address);
+/* A link that is there from the start: a serial port, raw, or the inherited
+ * socket; non-blocking. Throws InputError. */
+Descriptor open_link(const ListenAddress &address);
 
 } // namespace tsr
 

@@ -31,6 +31,8 @@ constexpr std::size_t kOutgoingMax = std::size_t{1} << 20;
 
 /* A gateway says HELLO at once. Who says nothing must not keep a place from one. */
 constexpr std::chrono::seconds kSilenceMax{10};
+/* After a connection that could not be taken for want of descriptors or memory. */
+constexpr std::chrono::seconds kAcceptPause{1};
 
 struct Peer {
     Descriptor descriptor;
@@ -64,8 +66,8 @@ class Gateways::Loop
     Loop(const ListenAddress &address, const GatewayOptions &options)
         : address_(address), options_(options), signals_(open_signals())
     {
-        if (address.kind == ListenAddress::Kind::serial) {
-            add_peer(open_serial(address));
+        if (address.is_one_link()) {
+            add_peer(open_link(address));
         } else {
             listener_ = open_listener(address);
         }
@@ -101,33 +103,32 @@ class Gateways::Loop
   private:
     bool finished() const
     {
-        const bool serial_gone = address_.kind == ListenAddress::Kind::serial && peers_.empty();
-        return serial_gone || (options_.once && served_ && peers_.empty());
+        const bool last_has_gone = served_ && peers_.empty();
+        return last_has_gone && (options_.once || address_.is_one_link());
     }
 
     /* [0] signals, [1] listener (or nothing), then the peers in order. */
     std::vector<pollfd> wait()
     {
         std::vector<pollfd> waits{{signals_.get(), POLLIN, 0}, {listener_.get(), POLLIN, 0}};
-        if (peers_.size() >= kConnectionsMax) {
+        const bool pausing = std::chrono::steady_clock::now() < no_accept_before_;
+        if (peers_.size() >= kConnectionsMax || pausing) {
             waits[1].fd = -1;
         }
         for (const auto &peer : peers_) {
             const short events = peer->session.outgoing().empty() ? POLLIN : POLLIN | POLLOUT;
             waits.push_back({peer->descriptor.get(), events, 0});
         }
-        const int timeout_ms = anybody_silent() ? 1000 : -1;
+        const int timeout_ms = anybody_silent() || pausing ? 1000 : -1;
         if (::poll(waits.data(), waits.size(), timeout_ms) < 0 && errno != EINTR) {
             throw std::runtime_error(std::string("poll: ") + std::strerror(errno));
         }
         return waits;
     }
 
-    /* A serial port's gateway may have said its HELLO to an earlier sink. */
-    bool must_speak(const Peer &peer) const
-    {
-        return address_.kind != ListenAddress::Kind::serial && !peer.session.has_spoken();
-    }
+    /* Over a serial port the gateway may have said its HELLO to an earlier sink; who started this one says it when
+     * it pleases. */
+    bool must_speak(const Peer &peer) const { return !address_.is_one_link() && !peer.session.has_spoken(); }
 
     bool anybody_silent() const
     {
@@ -157,7 +158,12 @@ class Gateways::Loop
     {
         Descriptor descriptor(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
         if (descriptor.get() < 0) {
-            return; /* it went away again */
+            if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {
+                /* It stays in the queue, and the listener ready: not to be asked again at once. */
+                options_.log(std::string("a connection waits: ") + std::strerror(errno));
+                no_accept_before_ = std::chrono::steady_clock::now() + kAcceptPause;
+            }
+            return; /* else it went away again */
         }
         const int on = 1;
         ::setsockopt(descriptor.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on); /* fails on Unix sockets: no harm */
@@ -218,6 +224,7 @@ class Gateways::Loop
     std::vector<std::unique_ptr<Peer>> peers_;
     std::array<std::uint8_t, kReadLen> buffer_{};
     bool served_ = false;
+    std::chrono::steady_clock::time_point no_accept_before_{};
 };
 
 Gateways::Gateways(const ListenAddress &address, const GatewayOptions &options)

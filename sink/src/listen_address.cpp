@@ -13,6 +13,7 @@ namespace
 {
 
 constexpr std::size_t kUnixPathMax = sizeof(sockaddr_un::sun_path) - 1;
+constexpr unsigned kDescriptorMax = 0x7fffffff;
 
 [[noreturn]] void refuse(std::string_view text, const std::string &field, const std::string &reason)
 {
@@ -35,7 +36,7 @@ ListenAddress parse_listen_address(std::string_view text)
 {
     const std::size_t colon = text.find(':');
     if (colon == std::string_view::npos) {
-        refuse(text, "", "is not unix:PATH, tcp:HOST:PORT or serial:DEVICE:BAUD");
+        refuse(text, "", "is not unix:PATH, tcp:HOST:PORT, serial:DEVICE:BAUD or fd:NUMBER");
     }
     const std::string_view kind = text.substr(0, colon);
     const std::string_view rest = text.substr(colon + 1);
@@ -49,8 +50,14 @@ ListenAddress parse_listen_address(std::string_view text)
         }
         return address;
     }
+    if (kind == "fd") {
+        address.kind = ListenAddress::Kind::inherited;
+        address.place = text;
+        address.descriptor = static_cast<int>(number(text, rest, "number", kDescriptorMax));
+        return address;
+    }
     if (kind != "tcp" && kind != "serial") {
-        refuse(text, "kind", "'" + std::string(kind) + "' is not unix, tcp or serial");
+        refuse(text, "kind", "'" + std::string(kind) + "' is not unix, tcp, serial or fd");
     }
     if (last == std::string_view::npos || last == 0) {
         refuse(text, "", kind == "tcp" ? "is not tcp:HOST:PORT" : "is not serial:DEVICE:BAUD");

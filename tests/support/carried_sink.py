@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Stands in for tarsier-sink on its Unix socket and carries the bytes to a real one on TSR_LINK: tcp or serial.
+"""Stands in for tarsier-sink on the socket it inherits and carries the bytes to a real one on TSR_LINK: tcp or serial.
 
 Takes tarsier-sink's own arguments; the real program comes from TSR_BUILD. A serial port is a pseudo-terminal.
 """
@@ -7,10 +7,10 @@ Takes tarsier-sink's own arguments; the real program comes from TSR_BUILD. A ser
 import os
 import pathlib
 import select
-import signal
 import socket
 import subprocess
 import sys
+import termios
 import time
 
 
@@ -27,6 +27,12 @@ def connect(port):
         except ConnectionRefusedError:
             time.sleep(0.01)
     sys.exit(1)
+
+
+def wait_until_raw(port):
+    """The sink has opened it then, and flushes no byte any more."""
+    while termios.tcgetattr(port)[3] & termios.ECHO:
+        time.sleep(0.01)
 
 
 def carry(first, second):
@@ -52,7 +58,7 @@ def unmarked_keys(file):
 def main():
     words = sys.argv[1:]
     listen, keys = words.index("--listen") + 1, words.index("--keys") + 1
-    path = words[listen].removeprefix("unix:")
+    downstream = socket.socket(fileno=int(words[listen].removeprefix("fd:")))
     upstream = None
     if os.environ["TSR_LINK"] == "serial":
         upstream, far_end = os.openpty()
@@ -62,19 +68,12 @@ def main():
         port = free_port()
         words[listen] = f"tcp:127.0.0.1:{port}"
     sink = subprocess.Popen([pathlib.Path(os.environ["TSR_BUILD"]) / "bin/tarsier-sink", *words])
-    # Told to end, the real sink exports; its end is then ours.
-    signal.signal(signal.SIGTERM, lambda *_: sink.terminate())
-    listener = socket.socket(socket.AF_UNIX)
-    listener.bind(path)
-    listener.listen()
     if upstream is None:
         upstream = connect(port)
-    downstream, _ = listener.accept()
-    carry(downstream.fileno(), upstream)
-    if os.environ["TSR_LINK"] == "tcp":
-        os.close(upstream)
     else:
-        sink.terminate()  # nobody hangs up a serial line
+        wait_until_raw(far_end)
+    carry(downstream.fileno(), upstream)
+    sink.terminate()  # it exports; nobody hangs up a serial line, and a TCP listener waits for another gateway
     sys.exit(sink.wait())
 
 

@@ -29,7 +29,7 @@ def refuse(what, command, *mentions, out=None):
     for mention in mentions:
         check(mention in lines[0], f"{what}: does not name {mention}: {lines[0]}")
     if out is not None and out.is_dir():
-        left = [file.name for file in out.iterdir() if file.name not in ("tarsier-run", "sink.log")]
+        left = [file.name for file in out.iterdir() if file.name not in ("tarsier-run", "unfinished")]
         check(not left, f"{what}: left {left} behind")
     print(f"{what}: {lines[0]}")
 

@@ -1,4 +1,4 @@
-"""The gateway link stores the same maps over TCP and over a serial port as over a Unix socket."""
+"""The gateway link stores the same maps over TCP and over a serial port as over the socket it inherits."""
 # SPDX-License-Identifier: Apache-2.0
 import os
 import pathlib
@@ -26,13 +26,13 @@ def carriers():
 with tempfile.TemporaryDirectory() as folder:
     folder = pathlib.Path(folder)
     site = make_scene("test_link_carriers", folder / "scene")
-    emulate(site, folder / "unix")
+    emulate(site, folder / "inherited")
     for carrier, named in carriers():
         os.environ["TSR_LINK"] = carrier
         out = folder / carrier
         emulate(site, out, "--sink", SUPPORT / "carried_sink.py")
         check(named in (out / "sink.log").read_text(), f"the sink did not listen on {carrier}")
-        check(stored_maps(out) == stored_maps(folder / "unix"), f"other maps over {carrier}")
-        check((out / "capture.pcapng").read_bytes() == (folder / "unix/capture.pcapng").read_bytes(),
+        check(stored_maps(out) == stored_maps(folder / "inherited"), f"other maps over {carrier}")
+        check((out / "capture.pcapng").read_bytes() == (folder / "inherited/capture.pcapng").read_bytes(),
               f"other frames on air over {carrier}")
         print(f"{carrier}: {len(stored_maps(out))} maps")

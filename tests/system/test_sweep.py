@@ -154,7 +154,7 @@ def check_signal(folder, scenario):
     out = folder / "stopped"
     words = [EMULATOR, scenario, "--out", out, "--sweep", "duration_s=10,1000,11", "--speed", "20"]
     emulator = subprocess.Popen([str(word) for word in words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    while not (out / "runs/2/sink.db").exists():
+    while not (out / "runs/2/unfinished/sink.db").exists():
         check(emulator.poll() is None, f"ended early: {emulator.stderr}")
         time.sleep(0.05)
     time.sleep(0.5)

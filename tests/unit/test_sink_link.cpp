@@ -1,8 +1,10 @@
 /* The gateway link: exactly one ANSWER each, over bytes and over sockets. SPDX-License-Identifier: Apache-2.0 */
+#include <atomic>
 #include <random>
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -203,18 +205,12 @@ int connect_to(const std::filesystem::path &path)
     return -1;
 }
 
-TEST_F(SinkLink, ServesAUnixSocketOnce)
+/* Each frame after the answer to the one before, as a gateway does. */
+void send_in_lockstep(int descriptor, const std::vector<Bytes> &fragments)
 {
-    const auto path = folder / "link.sock";
-    const ListenAddress address = parse_listen_address("unix:" + path.string());
-    GatewayOptions options;
-    options.once = true;
-    std::thread thread([&] { Gateways(address, options).serve(server); });
-    const int descriptor = connect_to(path);
-    ASSERT_GE(descriptor, 0);
     Bytes received;
     std::uint16_t sequence = 0;
-    for (const Bytes &fragment : map_of(5)) { /* in lockstep, as a gateway does */
+    for (const Bytes &fragment : fragments) {
         const Bytes frame = uplink_of(++sequence, fragment);
         ASSERT_EQ(::write(descriptor, frame.data(), frame.size()), static_cast<ssize_t>(frame.size()));
         while (answers_in(received).size() < sequence) {
@@ -224,10 +220,70 @@ TEST_F(SinkLink, ServesAUnixSocketOnce)
             received.insert(received.end(), buffer.begin(), buffer.begin() + got);
         }
     }
+}
+
+TEST_F(SinkLink, ServesAUnixSocketOnce)
+{
+    const auto path = folder / "link.sock";
+    const ListenAddress address = parse_listen_address("unix:" + path.string());
+    GatewayOptions options;
+    options.once = true;
+    std::thread thread([&] { Gateways(address, options).serve(server); });
+    const int descriptor = connect_to(path);
+    ASSERT_GE(descriptor, 0);
+    send_in_lockstep(descriptor, map_of(5));
     ::close(descriptor);
     thread.join();
     EXPECT_TRUE(store.find(3, 5).has_value());
     EXPECT_FALSE(std::filesystem::exists(path));
+}
+
+TEST_F(SinkLink, ServesAnInheritedSocketUntilItsOtherEndCloses)
+{
+    int ends[2];
+    ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
+    const ListenAddress address = parse_listen_address("fd:" + std::to_string(ends[0]));
+    std::thread thread([&] { Gateways(address, {}).serve(server); });
+    send_in_lockstep(ends[1], map_of(5));
+    ::close(ends[1]);
+    thread.join();
+    EXPECT_TRUE(store.find(3, 5).has_value());
+}
+
+TEST_F(SinkLink, WhatIsNoConnectedSocketIsRefused)
+{
+    EXPECT_REFUSED(Gateways(parse_listen_address("fd:99999"), {}), "fd:99999: number: Bad file descriptor");
+    const int alone = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    EXPECT_REFUSED(Gateways(parse_listen_address("fd:" + std::to_string(alone)), {}), "is not a connected stream");
+    ::close(alone);
+}
+
+/* Its descriptors are gone: the connection waits, the loop sleeps, and takes it when there is one again. */
+TEST_F(SinkLink, AConnectionThatCannotBeTakenYetWaits)
+{
+    const auto path = folder / "link.sock";
+    const ListenAddress address = parse_listen_address("unix:" + path.string());
+    std::atomic<int> waited = 0;
+    GatewayOptions options;
+    options.once = true;
+    options.log = [&](const std::string &line) { waited += line.starts_with("a connection waits") ? 1 : 0; };
+    Gateways gateways(address, options);
+    const int descriptor = connect_to(path);
+    rlimit limit{};
+    ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &limit), 0);
+    const rlimit none{3, limit.rlim_max}; /* stdin, stdout and stderr, and poll(2) takes three */
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+    std::thread thread([&] { gateways.serve(server); });
+    while (waited == 0) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_EQ(waited, 1);
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &limit), 0);
+    send_in_lockstep(descriptor, map_of(5));
+    ::close(descriptor);
+    thread.join();
+    EXPECT_TRUE(store.find(3, 5).has_value());
 }
 
 TEST_F(SinkLink, ASocketInUseIsRefusedAndAStaleOneReplaced)
@@ -260,7 +316,9 @@ TEST(SinkListenAddress, ReadsAndRefuses)
     const ListenAddress serial = parse_listen_address("serial:/dev/ttyACM0:115200");
     EXPECT_EQ(serial.place, "/dev/ttyACM0");
     EXPECT_EQ(serial.baud, 115200u);
+    EXPECT_EQ(parse_listen_address("fd:3").descriptor, 3);
     EXPECT_REFUSED(parse_listen_address("x"), "--listen x: is not");
+    EXPECT_REFUSED(parse_listen_address("fd:-1"), "number: '-1'");
     EXPECT_REFUSED(parse_listen_address("udp:a:1"), "'udp' is not unix");
     EXPECT_REFUSED(parse_listen_address("unix:"), "path: has 0 bytes");
     EXPECT_REFUSED(parse_listen_address("unix:" + std::string(200, 'a')), "path: has 200 bytes");

@@ -6,6 +6,7 @@
 #include <string>
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -15,17 +16,39 @@ namespace tsr
 {
 
 AtomicFile::AtomicFile(const std::filesystem::path &target, unsigned mode)
-    : target_(target), name_(target.parent_path() / ("." + target.filename().string() + ".XXXXXX"))
+    : target_(target), name_(target.parent_path() / ("." + target.filename().string() + ".new"))
 {
-    std::string pattern = name_.string();
-    descriptor_ = ::mkostemp(pattern.data(), O_CLOEXEC);
-    if (descriptor_ < 0) {
+    while (!open_alone()) {
+    }
+    if (::ftruncate(descriptor_, 0) != 0) { /* of a writer that was killed */
         fail("create");
     }
-    name_ = pattern;
     if (::fchmod(descriptor_, mode) != 0) {
         fail("mode");
     }
+}
+
+/* The lock is of the file, and the name may have gone to another while it was waited for. */
+bool AtomicFile::open_alone()
+{
+    descriptor_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600);
+    if (descriptor_ < 0) {
+        name_.clear(); /* somebody's own, perhaps */
+        fail("create");
+    }
+    while (::flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) { /* another error: a file system without locks */
+    }
+    struct stat opened {
+    };
+    struct stat named {
+    };
+    if (::fstat(descriptor_, &opened) == 0 && ::lstat(name_.c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
+        opened.st_ino == named.st_ino) {
+        return true;
+    }
+    ::close(descriptor_);
+    descriptor_ = -1;
+    return false;
 }
 
 void AtomicFile::write(std::span<const std::uint8_t> bytes)
@@ -47,26 +70,26 @@ void AtomicFile::complete()
     if (::fsync(descriptor_) != 0) {
         fail("fsync");
     }
+    if (::rename(name_.c_str(), target_.c_str()) != 0) {
+        fail("rename");
+    }
+    name_.clear();
     const int descriptor = descriptor_;
     descriptor_ = -1;
     if (::close(descriptor) != 0) {
         fail("close");
     }
-    if (::rename(name_.c_str(), target_.c_str()) != 0) {
-        fail("rename");
-    }
-    name_.clear();
 }
 
 void AtomicFile::discard()
 {
+    if (!name_.empty()) {
+        ::unlink(name_.c_str()); /* while it is locked, so it is ours */
+        name_.clear();
+    }
     if (descriptor_ >= 0) {
         ::close(descriptor_);
         descriptor_ = -1;
-    }
-    if (!name_.empty()) {
-        ::unlink(name_.c_str());
-        name_.clear();
     }
 }
 

@@ -4,9 +4,7 @@
  *
  * A file tarsier-run marks a folder as ours and is locked while a run writes
  * there. A folder that holds files of the names we write but no mark is
- * somebody's own and is refused; an earlier run's results are removed, since
- * test keys are the same again and old counters would look like replays. A run
- * that ends early leaves nothing behind but what its sink had to say.
+ * somebody's own and is refused.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -23,22 +21,28 @@ class OutFolder
   public:
     /* Throws InputError: cannot be made or written, somebody's own, in use. */
     explicit OutFolder(std::filesystem::path folder);
-    ~OutFolder(); /* without keep(): removes what was begun */
+    ~OutFolder();
     OutFolder(const OutFolder &) = delete;
     OutFolder &operator=(const OutFolder &) = delete;
 
     std::filesystem::path file(const char *name) const { return folder_ / name; }
     const std::filesystem::path &path() const { return folder_; }
-    /* The results are complete. */
-    void keep() { kept_ = true; }
+    /* Where a run keeps its results until they are complete. */
+    std::filesystem::path unfinished() const;
+    /* Throws InputError if input lies in what clear() or an UnfinishedRun takes away. */
+    void refuse_input(const std::filesystem::path &input) const;
+    /* Remove an earlier run's results. Throws InputError. */
+    void clear() const;
+    /* Its results are now those of the folder from, which go from there. Throws InputError. */
+    void replace_by(const std::filesystem::path &from) const;
+    /* A process that inherits it keeps the folder claimed while it lives. */
+    int lock() const { return lock_; }
 
   private:
     void refuse_foreign() const;
-    void clear() const;
 
     std::filesystem::path folder_;
     int lock_ = -1;
-    bool kept_ = false;
 };
 
 } // namespace tsr

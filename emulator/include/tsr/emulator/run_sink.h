@@ -8,12 +8,13 @@
 #define TSR_EMULATOR_RUN_SINK_H
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <vector>
 
-#include "tsr/emulator/out_folder.h"
 #include "tsr/emulator/run_record.h"
 #include "tsr/emulator/sink_link.h"
+#include "tsr/emulator/unfinished_run.h"
 
 namespace tsr
 {
@@ -31,10 +32,18 @@ class RunSink
     virtual unsigned restarts() const = 0;
 };
 
-/* program: tarsier-sink. site.toml and keys.toml are in out; site, keys and out are kept. Throws InputError. */
-std::unique_ptr<RunSink> start_map_sink(const std::filesystem::path &program, const Site &site, const OutFolder &out);
-/* The files go to pictures/ in out, and cloud.ply has no point. */
-std::unique_ptr<RunSink> start_jpeg_sink(const KeyRing &keys, const OutFolder &out);
+struct SinkProgram {
+    std::filesystem::path program;  /* tarsier-sink */
+    std::function<bool()> stopping; /* an end of the run is asked for */
+};
+
+/* Throws InputError if it cannot be run. */
+void check_program(const std::filesystem::path &program);
+
+/* site.toml and keys.toml are in run; site, keys and run are kept. Throws InputError. */
+std::unique_ptr<RunSink> start_map_sink(const SinkProgram &sink, const Site &site, const UnfinishedRun &run);
+/* The files go to pictures/, and cloud.ply has no point. */
+std::unique_ptr<RunSink> start_jpeg_sink(const KeyRing &keys, const UnfinishedRun &run);
 
 } // namespace tsr
 

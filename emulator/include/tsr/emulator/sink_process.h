@@ -1,6 +1,6 @@
 /*
- * The sink of an emulation: a real tarsier-sink process on a Unix socket,
- * spoken to in lockstep.
+ * The sink of an emulation: a real tarsier-sink process at the other end of a
+ * socket, spoken to in lockstep. It ends with this process, however that ends.
  *
  * Virtual time stands still while a request waits for its answer, so the run
  * does not depend on how fast the sink is. If the process dies it is started
@@ -14,6 +14,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,9 @@ class SinkProcess : public SinkLink
         std::filesystem::path database;
         std::filesystem::path out;
         std::filesystem::path log; /* its stdout and stderr */
+        int lock = -1;             /* a descriptor that it inherits: what is locked stays so while it writes */
+        /* An end of the run is asked for: an answer is not waited for as long then. */
+        std::function<bool()> stopping = [] { return false; };
     };
 
     /* Starts the process. Throws InputError if it cannot be run. */
@@ -43,8 +47,7 @@ class SinkProcess : public SinkLink
     SinkProcess &operator=(const SinkProcess &) = delete;
 
     /* Send one encoded link frame; returns the bytes of its ANSWER. Throws
-     * InputError if the sink refuses its input, std::runtime_error if it
-     * cannot be kept alive. */
+     * InputError if the sink refuses its input or cannot be kept alive. */
     std::vector<std::uint8_t> exchange(const std::uint8_t *frame, std::size_t len) override;
 
     void restart() override;
@@ -57,21 +60,22 @@ class SinkProcess : public SinkLink
   private:
     void start();
     void recover();
-    bool try_finish();
-    bool connect_socket();
     bool send_all(const std::uint8_t *bytes, std::size_t len);
-    bool read_answer(std::uint16_t sequence, std::vector<std::uint8_t> &answer);
-    bool try_exchange(const std::uint8_t *frame, std::size_t len, std::vector<std::uint8_t> &answer);
+    bool is_readable();
+    bool read_answer(std::uint16_t sequence);
+    bool ask(const std::uint8_t *frame, std::size_t len);
     void disconnect();
-    void reap(bool wait);
+    int reap();
 
     Options options_;
-    std::filesystem::path socket_path_;
-    std::vector<std::uint8_t> hello_; /* the gateway's HELLO, first on every connection */
+    std::vector<std::uint8_t> hello_;  /* the gateway's HELLO, first on every connection */
+    std::vector<std::uint8_t> answer_; /* to the last frame that had one */
+    bool greeted_ = false;             /* this process has had it */
     int socket_ = -1;
     pid_t pid_ = -1;
     unsigned restarts_ = 0;
     unsigned failures_ = 0; /* since the last answer */
+    unsigned silences_ = 0; /* of them those of a process that lives */
 };
 
 } // namespace tsr

@@ -1,6 +1,6 @@
 /*
  * The loop that waits for gateways: a listening socket with its connections,
- * or one serial port. All bytes that are there at one moment are one batch:
+ * or one link: a serial port, or an inherited socket. All bytes that are there at one moment are one batch:
  * one commit, then the answers.
  *
  * SPDX-License-Identifier: Apache-2.0
@@ -34,7 +34,7 @@ class Gateways
     Gateways(const Gateways &) = delete;
     Gateways &operator=(const Gateways &) = delete;
 
-    /* Serve until SIGINT or SIGTERM arrives, the serial port goes away, or options.once says so. */
+    /* Serve until SIGINT or SIGTERM arrives, the one link goes away, or options.once says so. */
     void serve(LinkServer &server);
 
   private:

@@ -1,7 +1,9 @@
 /*
- * Files that appear complete or not at all: the bytes go to a temporary name
- * in the same folder, reach the disk (fsync), and take the final name by
- * rename(2). An existing file stays whole until that instant.
+ * Files that appear complete or not at all: the bytes go to .NAME.new in the
+ * same folder, reach the disk (fsync), and take the final name by rename(2). An
+ * existing file stays whole until that instant. .NAME.new is locked (flock(2)),
+ * so a second writer waits for the first, and one that was killed leaves nothing
+ * that the next does not take over.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -31,6 +33,7 @@ class AtomicFile
     void complete();
 
   private:
+    bool open_alone();
     void discard();
     [[noreturn]] void fail(const char *step);
 

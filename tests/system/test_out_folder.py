@@ -1,0 +1,144 @@
+"""Whatever ends a run early, the results of the run before stay; complete ones replace them all, and nothing else is left."""
+# SPDX-License-Identifier: Apache-2.0
+import hashlib
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from run_site import BUILD, check, child_named, emulate, make_scene, start_emulator
+
+EMULATOR = BUILD / "bin/tarsier-emulator"
+
+
+def contents(out):
+    """Digest of every result by name."""
+    files = {str(file.relative_to(out)): hashlib.sha256(file.read_bytes()).hexdigest()
+             for file in sorted(out.rglob("*")) if file.is_file()}
+    return {name: digest for name, digest in files.items() if name != "tarsier-run" and not name.startswith("unfinished/")}
+
+
+def script(folder, name, body):
+    file = folder / name
+    file.write_text(f"#!/bin/sh\n{body}\n")
+    file.chmod(0o755)
+    return file
+
+
+def refused(what, out, site, *options, says):
+    """The run ends with status 2 and one line that says why, and out is as it was."""
+    before = contents(out)
+    run = subprocess.run([EMULATOR, site, f"--out={out}", "--quiet", *options], capture_output=True, text=True,
+                         errors="replace")
+    check(run.returncode == 2 and len(run.stderr.splitlines()) == 1 and says in run.stderr,
+          f"{what}: {run.returncode}: {run.stderr}")
+    after = contents(out)
+    check(after == before, f"{what}: changed {set(before.items()) ^ set(after.items())}")
+    print(f"{what}: {run.stderr.strip()}")
+
+
+def refusals(folder, site, out):
+    refused("no sink", out, site, "--sink", folder / "none", says="none: run: No such file")
+    refused("a sink that is no program", out, site, "--sink", site, says="run: Permission denied")
+    refused("a sink that ends", out, site, "--sink", "/bin/true", says="/bin/true: run: does not answer")
+    refuses = script(folder, "refuses", "echo first; echo 'sink: keys.toml: mode: no'; exit 2")
+    refused("a sink that refuses", out, site, "--sink", refuses, says="sink: keys.toml: mode: no")
+    frames = out / "maps/frames"
+    shutil.copytree(site.parent / "left160", frames)
+    text = site.read_text().replace('frames = "left160"', f'frames = "{frames}"')
+    moved = site.with_name("moved.toml")
+    moved.write_text(text)
+    refused("frames among the results", out, moved, says="is among the results of an earlier run")
+
+
+def names(folder, site):
+    """Folders of any name."""
+    emulate(site, folder / ("d" * 100) / ("e" * 100))
+    run = subprocess.run([EMULATOR, site, "--out=-rel", "--quiet"], cwd=folder, capture_output=True, text=True)
+    check(run.returncode == 0 and (folder / "-rel/summary.json").exists(), f"--out=-rel: {run.stderr}")
+    odd = os.fsencode(folder) + b"/sc\xffne"
+    os.rename(site.parent, odd)
+    try:
+        run = subprocess.run([EMULATOR, odd + b"/site.toml", "--out", os.fsencode(folder) + b"/o\xfft", "--quiet"],
+                             capture_output=True)
+        check(run.returncode in (0, 2), f"names that are no UTF-8: {run.returncode}: {run.stderr!r}")
+    finally:
+        os.rename(odd, site.parent)
+
+
+def wait_for(what, condition):
+    for _ in range(1000):
+        result = condition()
+        if result:
+            return result
+        time.sleep(0.01)
+    check(False, f"waited in vain for {what}")
+
+
+def gone(pid):
+    return not pathlib.Path(f"/proc/{pid}").exists()
+
+
+def killed(folder, site, out):
+    """The emulator is killed: its sink ends, nothing is lost, and the next run removes what it left."""
+    before = contents(out)
+    emulator = start_emulator(site, out, "--speed", "1")
+    sink = wait_for("the sink", lambda: child_named(emulator.pid, "tarsier-sink"))
+    time.sleep(0.2)
+    emulator.kill()
+    emulator.wait()
+    wait_for("the orphan's end", lambda: gone(sink))
+    check(contents(out) == before, "a killed run changed the results of the run before")
+    emulate(site, out)
+    left = [file for file in out.rglob("*") if file.name == "unfinished" or file.name.startswith(".")]
+    check(not left, f"left behind: {left}")
+
+
+def orphan_holds_the_folder(folder, site, out):
+    """A sink that outlives its emulator still writes: nobody else may."""
+    stays = script(folder, "stays", f"{BUILD}/bin/tarsier-sink \"$@\"; sleep 2")
+    emulator = start_emulator(site, out, "--speed", "1", "--sink", stays)
+    wait_for("the sink's log", lambda: (out / "unfinished/sink.log").exists() and
+             "listening" in (out / "unfinished/sink.log").read_text())
+    emulator.kill()
+    emulator.wait()
+    refused("an orphan", out, site, says="another run writes there")
+    time.sleep(2.5)
+
+
+def signals(folder, site, out):
+    """A sink that does not answer does not keep a run that is to end."""
+    before = contents(out)
+    silent = script(folder, "silent", "exec sleep 60")
+    emulator = subprocess.Popen([EMULATOR, site, "--out", out, "--quiet", "--sink", silent], stderr=subprocess.PIPE,
+                                text=True)
+    wait_for("the sink", lambda: child_named(emulator.pid, "sleep"))
+    emulator.send_signal(signal.SIGINT)
+    error = emulator.communicate(timeout=30)[1]
+    check(emulator.returncode == 2 and "does not answer" in error, f"{emulator.returncode}: {error}")
+    check(contents(out) == before, "a run whose sink is silent changed the results of the run before")
+
+    emulator = start_emulator(site, out, "--sink", silent)
+    sink = wait_for("the sink", lambda: child_named(emulator.pid, "sleep"))
+    emulator.send_signal(signal.SIGINT)
+    time.sleep(0.3)
+    emulator.send_signal(signal.SIGINT)
+    check(emulator.wait(timeout=3) == -signal.SIGINT, f"a second Ctrl-C: {emulator.returncode}")
+    os.kill(sink, signal.SIGKILL)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    folder = pathlib.Path(folder)
+    site = make_scene("test_out_folder", folder / "scene")
+    out = folder / "out"
+    emulate(site, out)
+    refusals(folder, site, out)
+    names(folder, site)
+    killed(folder, site, out)
+    orphan_holds_the_folder(folder, site, out)
+    signals(folder, site, out)
