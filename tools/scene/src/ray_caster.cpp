@@ -1,5 +1,5 @@
 /*
- * Embree 3 behind the scene's own terms.
+ * Embree behind the scene's own terms.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -7,7 +7,7 @@
 
 #include <stdexcept>
 
-#include <embree3/rtcore.h>
+#include "embree.h"
 
 namespace tsr::scene
 {
@@ -201,14 +201,12 @@ void RayCaster::set_time(std::uint64_t time_us, std::uint32_t span_us)
 
 std::optional<Hit> RayCaster::trace(const Eigen::Vector3f &origin, const Eigen::Vector3f &direction, float moment) const
 {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     RTCRayHit rayhit{};
     rayhit.ray = make_ray(origin, direction, 0, INFINITY, moment);
     rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(parts_->geometry->standing, &context, &rayhit);
-    rtcIntersect1(parts_->scene, &context, &rayhit); /* what is nearer */
+    intersect(parts_->geometry->standing, rayhit);
+    intersect(parts_->scene, rayhit); /* what is nearer */
     if (rayhit.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
         return std::nullopt;
     }
@@ -236,12 +234,10 @@ std::optional<Hit> RayCaster::trace(const Eigen::Vector3f &origin, const Eigen::
 bool RayCaster::is_blocked(const Eigen::Vector3f &origin, const Eigen::Vector3f &direction, float distance,
                            float moment) const
 {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     RTCRay ray = make_ray(origin, direction, kShadowStartM, distance, moment);
-    rtcOccluded1(parts_->geometry->standing, &context, &ray);
+    occlude(parts_->geometry->standing, ray);
     if (ray.tfar >= 0) {
-        rtcOccluded1(parts_->scene, &context, &ray);
+        occlude(parts_->scene, ray);
     }
     return ray.tfar < 0; /* Embree's mark of a blocked ray */
 }
