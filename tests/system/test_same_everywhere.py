@@ -70,6 +70,9 @@ area_m = [60, 40]
 count = 10
 start_within_s = 8
 """
+# Other ways to run one of them: what is sent is JPEG, and a run for each value.
+MODES = {"jpeg": ("bedroom", ("--set", 'pairs.boards="one"', "--baseline", "changes")),
+         "sweep": ("tank", ("--sweep", "pairs.baseline_mm=100,140"))}
 # SQLite's file, times of day, and keys, which do not depend on what is computed.
 NOT_COMPARED = ("sink.db", "sink.log", "keys.toml", "tarsier-run")
 
@@ -100,20 +103,27 @@ def contents(folder):
     return found
 
 
+def shortened(name):
+    """The words that run a scenario file."""
+    settings = (DURATION, *SCENARIOS[name])
+    return [SOURCE / f"emulator/scenarios/{name}.toml", *(word for setting in settings for word in ("--set", setting))]
+
+
 def bytes_of(programs, folder, threads):
-    """All that scenes, a rendering and a crowd that sees it give."""
+    """All that scenes, a rendering, a crowd that sees it, a baseline and a sweep give."""
     folder.mkdir()
     (folder / "harsh.toml").write_text(HARSH)
     (folder / "crowd.toml").write_text(CROWD)
     run(programs / "tarsier", "render", folder / "harsh.toml", "--threads", threads, "--out", folder / "frames")
     found = contents(folder / "frames")
-    runs = {name: (SOURCE / f"emulator/scenarios/{name}.toml", DURATION, *small) for name, small in SCENARIOS.items()}
-    runs.update({name: (folder / f"{name}.toml",) for name in ("harsh", "crowd")})
-    for name, (scenario, *settings) in runs.items():
-        options = [word for setting in settings for word in ("--set", setting)]
-        run(programs / "tarsier-emulator", scenario, *options, "--threads", threads, "--quiet", "--out", folder / name)
+    runs = {name: shortened(name) for name in SCENARIOS}
+    runs.update({name: [folder / f"{name}.toml"] for name in ("harsh", "crowd")})
+    runs.update({name: [*shortened(scenario), *options] for name, (scenario, options) in MODES.items()})
+    for name, words in runs.items():
+        run(programs / "tarsier-emulator", *words, "--threads", threads, "--quiet", "--out", folder / name)
         found.update(contents(folder / name))
-        check(any(file.startswith(f"{name}/maps/") for file in found), f"{name}: no map came, so nothing is compared")
+        check(any(re.match(f"{name}/(runs/1/)?(maps|pictures)/", file) for file in found),
+              f"{name}: no map came, so nothing is compared")
     return found
 
 
