@@ -2,6 +2,7 @@
 #include "tsr/host/output_files.h"
 
 #include "tsr/host/input_error.h"
+#include "tsr/host/paths.h"
 
 namespace tsr
 {
@@ -10,13 +11,9 @@ namespace
 
 namespace fs = std::filesystem;
 
-/* Absolute first: weakly_canonical() leaves a relative name as it is where nothing of it exists. */
 bool is_same_file(const fs::path &a, const fs::path &b)
 {
-    std::error_code error;
-    const fs::path whole_a = fs::weakly_canonical(fs::absolute(a, error), error);
-    const fs::path whole_b = fs::weakly_canonical(fs::absolute(b, error), error);
-    return !error && !whole_a.empty() && whole_a == whole_b;
+    return !a.empty() && !b.empty() && real_path(a) == real_path(b);
 }
 
 } // namespace

@@ -21,7 +21,8 @@ struct OutputFile {
     const char *option;
 };
 
-/* Throws InputError naming an output that is one of the inputs, or the same file as an output before it. */
+/* Throws InputError naming an output that is one of the inputs, or the same file as an output before it, and as
+ * real_path() does. */
 void check_outputs(const std::vector<OutputFile> &outputs, const std::vector<std::filesystem::path> &inputs);
 
 /* For CLI::Option::check(): an option that was given names something. */
