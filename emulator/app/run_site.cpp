@@ -79,6 +79,20 @@ Lateness play(const Options &options, const std::string &label, Simulation &simu
     return pace ? Lateness{pace->worst_late_s(), pace->late_s()} : Lateness{};
 }
 
+void print_error(const nlohmann::ordered_json &map)
+{
+    const auto &error = map.at("error");
+    if (error.is_null()) {
+        return;
+    }
+    std::printf("  map at %.1f s: median error %.3f px, ", map.at("capture_time_s").get<double>(),
+                error.at("median_px").get<double>());
+    if (const auto &depth = error.at("median_mm"); !depth.is_null()) {
+        std::printf("%.1f mm; ", depth.get<double>());
+    }
+    std::printf("%.1f %% of the pixels correct\n", 100 * error.at("correct").get<double>());
+}
+
 } // namespace
 
 void take_signals()
@@ -155,12 +169,7 @@ void print_result(const fs::path &out, const RunOutcome &outcome)
         for (const auto &pair : pairs) {
             print_counts(pair.at("name").get<std::string>().c_str(), pair);
             for (const auto &map : pair.at("maps")) {
-                if (map.contains("error")) {
-                    std::printf("  map at %.1f s: median error %.3f px, %.1f mm; %.1f %% of the pixels correct\n",
-                                map.at("capture_time_s").get<double>(), map.at("error").at("median_px").get<double>(),
-                                map.at("error").at("median_mm").get<double>(),
-                                100 * map.at("error").at("correct").get<double>());
-                }
+                print_error(map);
             }
         }
     }

@@ -38,7 +38,7 @@ function showTiles() {
     [latency.count > 0 ? time(latency.median) : "–", latency.count > 0 ? `median latency from capture to commit; 95 % within ${time(latency.p95)}` : "latency: nothing was delivered"],
     [bytes(totals.air_bytes), `on air in ${count(totals.air_frames, "frame")}${perMap}`],
     [errorPx.count > 0 ? `${number(errorPx.median, 2)} px` : "–", errorPx.count > 0 ?
-      `median error of ${count(errorPx.count, "map")}, ${short(errorMm.median)} mm; ${number(100 * totals.correct_median)} % of the pixels right within 1 px` : "error: no ground truth"],
+      `median error of ${count(errorPx.count, "map")}, ${errorMm.count > 0 ? short(errorMm.median) : "–"} mm; ${number(100 * totals.correct_median)} % of the pixels right within 1 px` : "error: no map was compared with ground truth"],
     [`${short(totals.energy_mj / 1000)} J`, `by all nodes, ${short(totals.energy_mj / Math.max(summary.virtual_time_s, 1e-6) / DATA.nodes.of)} mW each on average` +
       (totals.active_mj_per_map > 0 ? `; ${short(totals.active_mj_per_map)} mJ of work and frames for each map delivered` : "")],
     [unended ? "no end" : `${number(totals.shortest_life_days, totals.shortest_life_days < 10 ? 1 : 0)} <small>days</small>`,

@@ -49,6 +49,11 @@ Json battery_json(const NodeRecord &node)
             {"life_days", std::isfinite(node.life.days) ? Json(rounded(node.life.days, 2)) : Json()}};
 }
 
+Json rounded_or_null(const std::optional<double> &value, int digits)
+{
+    return value ? Json(rounded(*value, digits)) : Json();
+}
+
 Json error_json(const MapError &error)
 {
     return {{"truth_pixels", error.truth_pixels},
@@ -58,8 +63,8 @@ Json error_json(const MapError &error)
             {"bad_1", rounded(error.bad_1, 4)},
             {"median_px", rounded(error.median_px, 4)},
             {"mean_px", rounded(error.mean_px, 4)},
-            {"median_mm", rounded(error.median_mm, 2)},
-            {"median_depth_percent", rounded(error.median_depth_percent, 3)}};
+            {"median_mm", rounded_or_null(error.median_mm, 2)},
+            {"median_depth_percent", rounded_or_null(error.median_depth_percent, 3)}};
 }
 
 Json work_json(const NodeRecord &node)
@@ -192,19 +197,16 @@ Json json_of(const LinkRecord &link)
 Json json_of(const ReceivedMap &map)
 {
     const auto latency_s = map.latency_s();
-    Json json{{"node", map.node},
-              {"counter", map.counter},
-              {"capture_time_s", rounded(seconds(map.capture_time_us), 6)},
-              {"commit_time_s", map.commit_time_us ? Json(rounded(seconds(*map.commit_time_us), 6)) : Json()},
-              {"latency_s", latency_s ? Json(rounded(*latency_s, 6)) : Json()},
-              {"kept", map.kept},
-              {"map_bytes", map.map_bytes},
-              {"reference_bytes", map.reference_bytes},
-              {"file", map.file + map.ending}};
-    if (map.error) {
-        json["error"] = error_json(*map.error);
-    }
-    return json;
+    return {{"node", map.node},
+            {"counter", map.counter},
+            {"capture_time_s", rounded(seconds(map.capture_time_us), 6)},
+            {"commit_time_s", map.commit_time_us ? Json(rounded(seconds(*map.commit_time_us), 6)) : Json()},
+            {"latency_s", rounded_or_null(latency_s, 6)},
+            {"kept", map.kept},
+            {"map_bytes", map.map_bytes},
+            {"reference_bytes", map.reference_bytes},
+            {"file", map.file + map.ending},
+            {"error", map.error ? error_json(*map.error) : Json()}};
 }
 
 Json json_of(const ReceivedEvent &event)

@@ -208,14 +208,18 @@ void digest_maps(RunDigest &digest, const std::vector<ReceivedMap> &maps)
         }
         if (map.error) {
             error_px.push_back(map.error->median_px);
-            error_mm.push_back(map.error->median_mm);
+            if (map.error->median_mm) {
+                error_mm.push_back(*map.error->median_mm);
+            }
             correct.push_back(map.error->correct);
         }
     }
     digest.latency_s = quantiles_of(latency);
     digest.error_px = quantiles_of(error_px);
     digest.error_mm = quantiles_of(error_mm);
-    digest.correct = median_of(correct);
+    if (!correct.empty()) {
+        digest.correct = median_of(correct);
+    }
 }
 
 void digest_energy(RunDigest &digest, const std::vector<NodeRecord> &nodes, std::size_t maps)

@@ -78,7 +78,7 @@ Json totals_json(const RunRecord &run, const Json &nodes)
     totals["latency_s"] = quantiles_json(run.digest.latency_s, 6);
     totals["median_error_px"] = quantiles_json(run.digest.error_px, 4);
     totals["median_error_mm"] = quantiles_json(run.digest.error_mm, 2);
-    totals["correct_median"] = rounded(run.digest.correct, 4);
+    totals["correct_median"] = run.digest.correct ? Json(rounded(*run.digest.correct, 4)) : Json();
     totals["shortest_life_node"] = run.digest.shortest_life;
     totals["shortest_life_days"] = days_json(run.digest.shortest_life_days);
     totals["median_life_days"] = days_json(run.digest.median_life_days);

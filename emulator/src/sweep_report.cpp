@@ -84,8 +84,7 @@ void add_errors(const Json &summary, Json &figures)
     double sum_px = 0;
     for (const Json &pair : summary.at("pairs")) {
         for (const Json &map : pair.at("maps")) {
-            if (map.contains("error")) {
-                const Json &error = map.at("error");
+            if (const Json &error = map.at("error"); !error.is_null()) {
                 ++maps;
                 sum_px += error.at("mean_px").get<double>();
                 truth_pixels += error.at("truth_pixels").get<std::size_t>();
@@ -98,7 +97,7 @@ void add_errors(const Json &summary, Json &figures)
     figures["error_median_px"] = quantile(totals.at("median_error_px"), "median");
     figures["error_median_mm"] = quantile(totals.at("median_error_mm"), "median");
     figures["matched"] = mean(static_cast<double>(matched_pixels), truth_pixels, 4);
-    figures["correct"] = maps > 0 ? totals.at("correct_median") : Json();
+    figures["correct"] = totals.at("correct_median");
 }
 
 Json figures_of(const Json &summary)

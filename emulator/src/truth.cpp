@@ -17,12 +17,9 @@ namespace tsr
 namespace
 {
 
-/* The lower median; values are reordered. */
+/* The lower median, of at least one; values are reordered. */
 double median(std::vector<double> &values)
 {
-    if (values.empty()) {
-        return 0;
-    }
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
@@ -30,13 +27,13 @@ double median(std::vector<double> &values)
 
 double share(std::size_t part, std::size_t whole)
 {
-    return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
+    return static_cast<double>(part) / static_cast<double>(whole);
 }
 
 } // namespace
 
-MapError compare_with_truth(const FloatImage &map, const FloatImage &truth, const SitePair &pair,
-                            const std::filesystem::path &name)
+std::optional<MapError> compare_with_truth(const FloatImage &map, const FloatImage &truth, const SitePair &pair,
+                                           const std::filesystem::path &name)
 {
     if (map.width != truth.width || map.height != truth.height) {
         throw InputError(name.string(), "size", "is not the map's");
@@ -70,14 +67,19 @@ MapError compare_with_truth(const FloatImage &map, const FloatImage &truth, cons
             errors_percent.push_back(100 * error_mm / true_mm);
         }
     }
+    if (errors_px.empty()) {
+        return std::nullopt;
+    }
     error.matched_pixels = errors_px.size();
     error.correct = share(within_one, error.truth_pixels);
-    error.bad_half = error.matched_pixels > 0 ? 1 - share(within_half, error.matched_pixels) : 0;
-    error.bad_1 = error.matched_pixels > 0 ? 1 - share(within_one, error.matched_pixels) : 0;
-    error.mean_px = error.matched_pixels > 0 ? sum_px / static_cast<double>(error.matched_pixels) : 0;
+    error.bad_half = 1 - share(within_half, error.matched_pixels);
+    error.bad_1 = 1 - share(within_one, error.matched_pixels);
+    error.mean_px = sum_px / static_cast<double>(error.matched_pixels);
     error.median_px = median(errors_px);
-    error.median_mm = median(errors_mm);
-    error.median_depth_percent = median(errors_percent);
+    if (!errors_mm.empty()) {
+        error.median_mm = median(errors_mm);
+        error.median_depth_percent = median(errors_percent);
+    }
     return error;
 }
 

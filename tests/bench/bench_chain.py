@@ -52,7 +52,7 @@ def pair_targets(pair, node):
                      how="median over its maps")
         yield target(f"{name}: coded reference image",
                      statistics.median(entry["reference_bytes"] for entry in maps), "B", how="median over its maps")
-    errors = [entry["error"] for entry in maps if "error" in entry]
+    errors = [entry["error"] for entry in maps if entry["error"] is not None]
     for key, unit in (("correct", "of pixels with ground truth"), ("bad_1", "of matched pixels"),
                       ("bad_half", "of matched pixels"), ("median_px", "px"), ("median_depth_percent", "%")):
         if errors:

@@ -1,6 +1,8 @@
 """A virtual scene runs the whole chain, its recording plays the same, and what cannot be is refused by line."""
 # SPDX-License-Identifier: Apache-2.0
+import csv
 import pathlib
+import struct
 import subprocess
 import sys
 import tempfile
@@ -63,6 +65,19 @@ with tempfile.TemporaryDirectory() as folder:
     played = emulate(folder / "frames1/site.toml", folder / "played")
     check(stored_maps(folder / "live") == stored_maps(folder / "played"), "the recording gives other maps")
     check([pair["maps"][0]["error"] for pair in live["pairs"]] == [pair["maps"][0]["error"] for pair in played["pairs"]], "other errors")
+
+    truths = sorted((folder / "frames3/pair-2/truth").iterdir())
+    for file in truths:
+        header, pixels = file.read_bytes().split(b"-1.0\n", 1)
+        file.write_bytes(header + b"-1.0\n" + struct.pack("<f", float("inf")) * (len(pixels) // 4))
+    blind = emulate(folder / "frames3/site.toml", folder / "blind")
+    judged = played["pairs"][0]["maps"][0]["error"]
+    check([pair["maps"][0]["error"] for pair in blind["pairs"]] == [judged, None], f"a truth without pixels: {blind['pairs']}")
+    totals = blind["totals"]
+    check(totals["median_error_px"]["count"] == 1 and totals["correct_median"] == judged["correct"], f"{totals}")
+    with (folder / "blind/maps.csv").open(newline="") as lines:
+        cells = {row["node"]: [row[name] for name in row if name.startswith("error_")] for row in csv.DictReader(lines)}
+    check(all(cells[str(blind["pairs"][0]["lead"])]) and not any(cells[str(blind["pairs"][1]["lead"])]), f"{cells}")
 
     again = run(BUILD / "bin/tarsier", "render", scenario, "--out", folder / "frames1")
     check(again.returncode == 2 and "is there already" in again.stderr, again.stderr)

@@ -61,7 +61,7 @@ def lower_median(values):
 def expected(summary):
     """The figures of a run, from its summary.json alone."""
     nodes, totals = summary["nodes"], summary["totals"]
-    errors = [one["error"] for pair in summary["pairs"] for one in pair["maps"] if "error" in one]
+    errors = [one["error"] for pair in summary["pairs"] for one in pair["maps"] if one["error"] is not None]
     events = [event["latency_s"] for event in summary["events"]]
     figures = {name: totals[name] for name in ("frames_watched", "frames_woken", "maps_made", "maps_withheld", "maps_lost", "maps_received", "air_bytes",
                                                "shortest_life_days", "median_life_days")}

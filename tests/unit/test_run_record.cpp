@@ -246,12 +246,25 @@ TEST(RunRecord, TablesWithoutRowsHaveTheSameColumns)
     const Table none = maps_table(empty);
     ReceivedMap judged;
     judged.error = MapError{};
+    judged.error->median_depth_percent = 1;
     empty.maps = {judged, ReceivedMap{}};
     const Table two = maps_table(empty);
     EXPECT_EQ(none.columns, two.columns);
     EXPECT_EQ(csv_of(none).find('\n'), csv_of(none).size() - 1);
     EXPECT_FALSE(two.rows[0].back().is_null());
     EXPECT_TRUE(two.rows[1].back().is_null()) << "not compared with truth";
+}
+
+TEST(RunRecord, MapsWithNothingToCompareHaveNoError)
+{
+    MemoryRun run(short_site());
+    run.run(1);
+    RunRecord none = record_of(run);
+    none.maps.assign(1, ReceivedMap{});
+    EXPECT_TRUE(json_of(none.maps[0]).at("error").is_null());
+    const auto totals = make_summary(none).at("totals");
+    EXPECT_TRUE(totals.at("correct_median").is_null()) << totals.dump();
+    EXPECT_EQ(totals.at("median_error_px").at("count"), 0);
 }
 
 TEST(RunRecord, NamesAreQuotedInTables)

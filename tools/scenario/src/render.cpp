@@ -12,9 +12,9 @@
 #include <iomanip>
 #include <mutex>
 #include <sstream>
-#include <system_error>
 #include <thread>
 
+#include "partial_folder.h"
 #include "tsr/host/atomic_file.h"
 #include "tsr/host/image_file.h"
 #include "tsr/host/input_error.h"
@@ -28,49 +28,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-/* Grows under another name and gets its own when it is complete. */
-class PartialFolder
-{
-  public:
-    explicit PartialFolder(const fs::path &out) : out_(out), folder_(out.string() + ".partial")
-    {
-        std::error_code error;
-        if (fs::exists(out) && !fs::is_empty(out, error)) {
-            throw InputError(out.string(), "--out", "is there already and not an empty folder");
-        }
-        fs::remove_all(folder_, error);
-        make(folder_);
-    }
-    ~PartialFolder()
-    {
-        std::error_code ignored;
-        fs::remove_all(folder_, ignored);
-    }
-    PartialFolder(const PartialFolder &) = delete;
-    PartialFolder &operator=(const PartialFolder &) = delete;
-
-    const fs::path &path() const { return folder_; }
-    void make(const fs::path &folder) const
-    {
-        std::error_code error;
-        fs::create_directories(folder, error);
-        if (error) {
-            throw InputError(folder.string(), "--out", error.message());
-        }
-    }
-    void keep() const
-    {
-        std::error_code error;
-        fs::remove(out_, error);
-        fs::rename(folder_, out_, error);
-        if (error) {
-            throw InputError(out_.string(), "--out", error.message());
-        }
-    }
-
-  private:
-    fs::path out_, folder_;
-};
+constexpr std::size_t kFramesMax = 1'000'000; /* names of six digits sort as frames follow */
 
 std::string frame_name(std::size_t index)
 {
@@ -205,8 +163,20 @@ bool render_scenario(const Scenario &scenario, const RenderOptions &options)
     const Staging staging = stage_scenario(scenario);
     const std::uint32_t period_ms = options.period_ms > 0 ? options.period_ms : scenario.pairs.watch_period_ms;
     const auto frames = static_cast<std::size_t>(scenario.scene.duration_s * 1000 / period_ms) + 1;
-    const PartialFolder folder(options.out);
+    if (frames > kFramesMax) {
+        throw InputError(scenario.file.string(), options.period_ms > 0 ? "--period-ms" : "pairs.watch_period_ms",
+                         std::to_string(frames) + " frames a view in duration_s, at most " +
+                             std::to_string(kFramesMax) + " are written");
+    }
+    const auto goes_on = [&] { return !options.progress || options.progress(0, frames * staging.site.pairs.size()); };
+    if (!goes_on()) {
+        return false;
+    }
+    PartialFolder folder(options.out);
     for (std::size_t i = 0; i < staging.site.pairs.size(); ++i) {
+        if (!goes_on()) {
+            return false;
+        }
         for (const char *part : {"left", "right", "truth", "depth", "labels"}) {
             folder.make(folder.path() / pair_folder(i) / part);
         }

@@ -26,6 +26,13 @@ void take_signal(int number)
     stop_signal = number;
 }
 
+void take_signals()
+{
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+        std::signal(number, take_signal);
+    }
+}
+
 struct Options {
     std::filesystem::path scenario;
     std::vector<std::string> settings;
@@ -35,12 +42,12 @@ struct Options {
 int render(const Options &options)
 {
     const Scenario scenario = load_scenario(options.scenario, options.settings);
-    for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
-        std::signal(number, take_signal);
-    }
     RenderOptions render = options.render;
     const bool shown = isatty(STDERR_FILENO) != 0;
     render.progress = [shown](std::size_t done, std::size_t all) {
+        if (done == 0) { /* until then there is nothing to clean up: a signal ends the program */
+            take_signals();
+        }
         if (shown) {
             std::fprintf(stderr, "\r%zu of %zu pairs of frames\x1b[K", done, all);
         }

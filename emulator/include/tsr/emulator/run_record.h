@@ -38,7 +38,7 @@ struct ReceivedMap {
     std::size_t reference_bytes = 0;
     std::string file;              /* below the out folder, without ending */
     std::string ending = ".pfm";   /* of the file of numbers; of a baseline's, of its left picture */
-    std::optional<MapError> error; /* where there is ground truth */
+    std::optional<MapError> error; /* where there is ground truth to compare a match with */
 
     std::optional<double> latency_s() const; /* from capture to commit */
 };
@@ -114,7 +114,7 @@ struct RunDigest { /* what one looks at first */
     Quantiles latency_s;
     Quantiles error_px; /* over maps, of each map's median error */
     Quantiles error_mm;
-    double correct = 0;                      /* median over maps of the part within 1 px */
+    std::optional<double> correct;           /* median over maps with an error of the part within 1 px */
     double active_mj = 0;                    /* of all nodes */
     double active_mj_per_map = 0;            /* for each map the sink has; 0 without any */
     std::uint16_t shortest_life = kNodeNone; /* a node with a battery that will be empty first; not the gateway */

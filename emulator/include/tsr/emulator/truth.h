@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 
 #include "tsr/host/pfm.h"
 #include "tsr/host/site.h"
@@ -16,20 +17,22 @@ namespace tsr
 {
 
 struct MapError {
-    std::size_t truth_pixels = 0;   /* with ground truth */
-    std::size_t matched_pixels = 0; /* of these, valid in the map */
+    std::size_t truth_pixels = 0;   /* with ground truth; above 0 */
+    std::size_t matched_pixels = 0; /* of these, valid in the map; above 0 */
     double correct = 0;             /* within 1 px, over all pixels with truth */
     double bad_half = 0;            /* more than 0.5 px wrong, over matched pixels */
     double bad_1 = 0;               /* more than 1 px wrong, over matched pixels */
     double median_px = 0;           /* median |disparity error|, over matched pixels */
     double mean_px = 0;
-    double median_mm = 0;            /* median |depth error|, Z = f B / (d + d0) */
-    double median_depth_percent = 0; /* the same, of the true depth */
+    /* Median |depth error|, Z = f B / (d + d0), and the same of the true depth; none where no pixel has both depths. */
+    std::optional<double> median_mm;
+    std::optional<double> median_depth_percent;
 };
 
-/* Throws InputError if the two differ in size. name stands for the truth in errors. */
-MapError compare_with_truth(const FloatImage &map, const FloatImage &truth, const SitePair &pair,
-                            const std::filesystem::path &name);
+/* Nothing if no pixel has both a match and a truth. Throws InputError if the two differ in size. name stands for the
+ * truth in errors. */
+std::optional<MapError> compare_with_truth(const FloatImage &map, const FloatImage &truth, const SitePair &pair,
+                                           const std::filesystem::path &name);
 
 } // namespace tsr
 

@@ -25,11 +25,11 @@ namespace tsr
 {
 
 struct RenderOptions {
-    std::filesystem::path out;   /* must not exist, or be empty */
+    std::filesystem::path out;   /* must not exist, or be an empty folder that is neither in use nor a mount point */
     std::uint32_t period_ms = 0; /* between frames; 0: the scenario's watch period */
     unsigned threads = 0;        /* 0: as many as the machine has; the result is the same */
-    /* Frames of pairs done, of all; called from one thread at a time. false ends it and leaves nothing. May be empty.
-     */
+    /* Frames of pairs done, of all; called from one thread at a time, first with none done, before anything is
+     * written. false ends it and leaves nothing. May be empty. */
     std::function<bool(std::size_t done, std::size_t all)> progress;
 };
 
