@@ -9,6 +9,8 @@
 #include <csignal>
 #include <cstdio>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "progress_bar.h"
 #include "tsr/emulator/out_folder.h"
@@ -38,6 +40,29 @@ void print_counts(const char *name, const nlohmann::ordered_json &counts)
                 counts.at("maps_made").get<int>(), counts.at("maps_withheld").get<int>(),
                 counts.at("maps_sent").get<int>(), counts.at("maps_received").get<int>(),
                 counts.at("maps_lost").get<int>());
+}
+
+/* Of one figure of the maps that were compared with truth. */
+Quantiles errors_of(const nlohmann::ordered_json &maps, const char *figure)
+{
+    std::vector<double> values;
+    for (const auto &map : maps) {
+        if (map.contains("error") && !map.at("error").is_null()) {
+            values.push_back(map.at("error").at(figure).get<double>());
+        }
+    }
+    return quantiles_of(values);
+}
+
+/* One line, however many there are. */
+void print_errors(const nlohmann::ordered_json &maps)
+{
+    const Quantiles px = errors_of(maps, "median_px");
+    if (px.count > 0) {
+        std::printf("  %zu %s against truth: median error %.3f px, %.1f mm; %.1f %% of the pixels correct\n", px.count,
+                    px.count == 1 ? "map" : "maps, medians", px.median, errors_of(maps, "median_mm").median,
+                    100 * errors_of(maps, "correct").median);
+    }
 }
 
 /* To the end, or to a signal. */
@@ -89,7 +114,7 @@ int exit_status()
 }
 
 RunOutcome run_site(const Options &options, const fs::path &folder, const std::string &label, const Site &of_maps,
-                    const KeyRing &keys, Pictures &pictures)
+                    const KeyRing &keys, Pictures &pictures, const StagedScenario *scenario)
 {
     const std::optional<Baseline> baseline = baseline_of(options);
     const Site site = baseline ? baseline_site(of_maps) : of_maps;
@@ -98,6 +123,9 @@ RunOutcome run_site(const Options &options, const fs::path &folder, const std::s
     write_site(out.file("site.toml"), site);
     load_site(out.file("site.toml")); /* what the sink would refuse is refused here, by name */
     write_keys(out.file("keys.toml"), keys);
+    if (scenario != nullptr) {
+        write_file_atomically(out.file("scenario.toml"), scenario->effective().text_for(out.path()));
+    }
 
     take_signals();
     const auto sink = baseline ? start_jpeg_sink(keys, out) : start_map_sink(options.sink, site, out);
@@ -109,7 +137,10 @@ RunOutcome run_site(const Options &options, const fs::path &folder, const std::s
     sink->finish();
 
     capture.complete();
-    RunRecord record = gather(site, simulation, pictures, sink->maps(simulation, pictures), sink->events(simulation));
+    auto events = sink->events(simulation);
+    find_true_depths(site, pictures, events);
+    RunRecord record = gather(site, simulation, pictures, sink->maps(simulation, pictures), std::move(events));
+    record.settings = scenario != nullptr ? scenario->settings() : RunSettings{};
     record.sink_restarts = sink->restarts();
     record.wall_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     outcome.summary = make_summary(record);
@@ -133,14 +164,7 @@ void print_result(const fs::path &out, const RunOutcome &outcome)
     } else {
         for (const auto &pair : pairs) {
             print_counts(pair.at("name").get<std::string>().c_str(), pair);
-            for (const auto &map : pair.at("maps")) {
-                if (map.contains("error")) {
-                    std::printf("  map at %.1f s: median error %.3f px, %.1f mm; %.1f %% of the pixels correct\n",
-                                map.at("capture_time_s").get<double>(), map.at("error").at("median_px").get<double>(),
-                                map.at("error").at("median_mm").get<double>(),
-                                100 * map.at("error").at("correct").get<double>());
-                }
-            }
+            print_errors(pair.at("maps"));
         }
     }
     if (const auto &baseline = summary.at("baseline"); !baseline.is_null()) {

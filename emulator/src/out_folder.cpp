@@ -23,10 +23,10 @@ namespace
 {
 
 constexpr const char *kMark = "tarsier-run";
-constexpr std::array kNames = {"site.toml",   "keys.toml",  "sink.db",   "sink.db-wal",  "sink.db-shm",
-                               "sink.socket", "sink.log",   "sink.json", "summary.json", "capture.pcapng",
-                               "index.html",  "cloud.ply",  "maps",      "nodes.csv",    "links.csv",
-                               "maps.csv",    "events.csv", "sweep.csv", "runs",         "pictures"};
+constexpr std::array kNames = {"site.toml", "keys.toml", "sink.db",      "sink.db-wal",    "sink.db-shm", "sink.socket",
+                               "sink.log",  "sink.json", "summary.json", "capture.pcapng", "index.html",  "cloud.ply",
+                               "maps",      "nodes.csv", "links.csv",    "maps.csv",       "events.csv",  "sweep.csv",
+                               "runs",      "pictures",  "scenario.toml"};
 
 } // namespace
 
