@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "progress_bar.h"
 #include "tsr/emulator/pace.h"
@@ -26,19 +27,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kPairsPrinted = 20; /* one by one; more are summed up */
-constexpr double kLateToldS = 0.2;        /* less is how exactly a machine sleeps and draws a frame */
-
 volatile std::sig_atomic_t signal_taken = 0;
-
-void print_counts(const char *name, const nlohmann::ordered_json &counts)
-{
-    std::printf("%s: %d frames watched, %d woken, %d maps made, %d withheld, %d sent, %d received, %d lost\n", name,
-                counts.at("frames_watched").get<int>(), counts.at("frames_woken").get<int>(),
-                counts.at("maps_made").get<int>(), counts.at("maps_withheld").get<int>(),
-                counts.at("maps_sent").get<int>(), counts.at("maps_received").get<int>(),
-                counts.at("maps_lost").get<int>());
-}
 
 /* What the cameras of a site see must not lie where the results go. */
 void refuse_inputs(const OutFolder &out, const Site &site)
@@ -79,20 +68,6 @@ Lateness play(const Options &options, const std::string &label, Simulation &simu
     return pace ? Lateness{pace->worst_late_s(), pace->late_s()} : Lateness{};
 }
 
-void print_error(const nlohmann::ordered_json &map)
-{
-    const auto &error = map.at("error");
-    if (error.is_null()) {
-        return;
-    }
-    std::printf("  map at %.1f s: median error %.3f px, ", map.at("capture_time_s").get<double>(),
-                error.at("median_px").get<double>());
-    if (const auto &depth = error.at("median_mm"); !depth.is_null()) {
-        std::printf("%.1f mm; ", depth.get<double>());
-    }
-    std::printf("%.1f %% of the pixels correct\n", 100 * error.at("correct").get<double>());
-}
-
 } // namespace
 
 void take_signals()
@@ -121,7 +96,7 @@ int exit_status()
 }
 
 RunOutcome run_site(const Options &options, const fs::path &folder, const std::string &label, const Site &of_maps,
-                    const KeyRing &keys, Pictures &pictures)
+                    const KeyRing &keys, Pictures &pictures, const StagedScenario *scenario)
 {
     const std::optional<Baseline> baseline = baseline_of(options);
     const Site site = baseline ? baseline_site(of_maps) : of_maps;
@@ -133,6 +108,9 @@ RunOutcome run_site(const Options &options, const fs::path &folder, const std::s
     write_site(run.file("site.toml"), site);
     load_site(run.file("site.toml")); /* what the sink would refuse is refused here, by name */
     write_keys(run.file("keys.toml"), keys);
+    if (scenario != nullptr) {
+        write_file_atomically(run.file("scenario.toml"), scenario->effective().text_for(out.path()));
+    }
 
     const SinkProgram program{options.sink, [] { return stop_signal() != 0; }};
     const auto sink = baseline ? start_jpeg_sink(keys, run) : start_map_sink(program, site, run);
@@ -144,7 +122,10 @@ RunOutcome run_site(const Options &options, const fs::path &folder, const std::s
     sink->finish();
 
     capture.complete();
-    RunRecord record = gather(site, simulation, pictures, sink->maps(simulation, pictures), sink->events(simulation));
+    auto events = sink->events(simulation);
+    find_true_depths(site, pictures, events);
+    RunRecord record = gather(site, simulation, pictures, sink->maps(simulation, pictures), std::move(events));
+    record.settings = scenario != nullptr ? scenario->settings() : RunSettings{};
     record.sink_restarts = sink->restarts();
     record.wall_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     outcome.summary = make_summary(record);
@@ -157,40 +138,6 @@ RunOutcome run_site(const Options &options, const fs::path &folder, const std::s
     write_file_atomically(run.file("summary.json"), outcome.summary.dump(2) + "\n");
     run.complete();
     return outcome;
-}
-
-void print_result(const fs::path &out, const RunOutcome &outcome)
-{
-    const auto &summary = outcome.summary;
-    const auto &pairs = summary.at("pairs");
-    if (pairs.size() > kPairsPrinted) {
-        print_counts((std::to_string(pairs.size()) + " pairs").c_str(), summary.at("totals"));
-    } else {
-        for (const auto &pair : pairs) {
-            print_counts(pair.at("name").get<std::string>().c_str(), pair);
-            for (const auto &map : pair.at("maps")) {
-                print_error(map);
-            }
-        }
-    }
-    if (const auto &baseline = summary.at("baseline"); !baseline.is_null()) {
-        std::printf(
-            "a baseline: in the place of maps both views, as JPEG of quality %d; %d captures failed, by their camera "
-            "or for want of room in a message\n",
-            baseline.at("jpeg_quality").get<int>(), summary.at("totals").at("captures_failed").get<int>());
-    }
-    std::printf("%.1f s of virtual time in %.1f s; results in %s, look at %s\n",
-                summary.at("virtual_time_s").get<double>(), summary.at("wall_time_s").get<double>(), out.c_str(),
-                (out / "index.html").c_str());
-    print_lateness(outcome.late);
-}
-
-void print_lateness(const Lateness &late)
-{
-    if (late.worst_s > kLateToldS) {
-        std::printf("the machine did not keep up with --speed: %.1f s late at worst, %.1f s at the end\n", late.worst_s,
-                    late.end_s);
-    }
 }
 
 } // namespace tsr::app

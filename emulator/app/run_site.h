@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "options.h"
+#include "staged_scenario.h"
 #include "tsr/emulator/pictures.h"
 #include "tsr/host/keys.h"
 #include "tsr/host/site.h"
@@ -36,13 +37,9 @@ int stop_signal();
 /* The exit status of what a signal may have ended, which it tells. */
 int exit_status();
 
-/* label: before the progress bar. Throws InputError. */
+/* label: before the progress bar; scenario: that the site is of, null: of none. Throws InputError. */
 RunOutcome run_site(const Options &options, const std::filesystem::path &out, const std::string &label,
-                    const Site &site, const KeyRing &keys, Pictures &pictures);
-
-void print_result(const std::filesystem::path &out, const RunOutcome &outcome);
-/* A line if the machine did not keep up. */
-void print_lateness(const Lateness &late);
+                    const Site &site, const KeyRing &keys, Pictures &pictures, const StagedScenario *scenario);
 
 } // namespace tsr::app
 

@@ -14,6 +14,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "print_result.h"
 #include "run_site.h"
 #include "staged_scenario.h"
 #include "tsr/emulator/out_folder.h"
@@ -122,7 +123,7 @@ int run_sweep(const Options &options, const Settings &settings)
         const std::string folder = folder_of(i + 1, points.size());
         const std::string label = "run " + std::to_string(i + 1) + " of " + std::to_string(points.size()) + " ";
         const RunOutcome outcome =
-            run_site(options, out.path() / folder, label, staged.site(), staged.keys(), *pictures);
+            run_site(options, out.path() / folder, label, staged.site(), staged.keys(), *pictures, &staged);
         report.scenario = staged.name();
         add_run(report, points[i], outcome.summary, folder);
         write_sweep(out.path(), report);

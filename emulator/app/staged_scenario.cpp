@@ -4,13 +4,20 @@
 #include "tsr/emulator/crowd_pictures.h"
 #include "tsr/emulator/preflight.h"
 #include "tsr/emulator/scene_pictures.h"
+#include "tsr/emulator/sweep.h"
 
 namespace tsr::app
 {
 
 StagedScenario::StagedScenario(const std::filesystem::path &file, const std::vector<std::string> &settings)
-    : scenario_(load_scenario(file, settings))
+    : scenario_(load_scenario(file, settings)), effective_(file, settings)
 {
+    settings_.scenario = file.filename().string();
+    for (const std::string &setting : settings) {
+        if (key_of(setting) != "seed") { /* the site tells it */
+            settings_.set.push_back(without_folders(setting));
+        }
+    }
     if (scenario_.recorded) {
         crowd_ = stage_crowd(scenario_);
     } else {

@@ -13,8 +13,10 @@
 #include <vector>
 
 #include "tsr/emulator/pictures.h"
+#include "tsr/emulator/run_record.h"
 #include "tsr/host/keys.h"
 #include "tsr/scenario/crowd.h"
+#include "tsr/scenario/effective.h"
 #include "tsr/scenario/staging.h"
 
 namespace tsr::app
@@ -23,7 +25,7 @@ namespace tsr::app
 class StagedScenario
 {
   public:
-    /* settings: of --set. Throws InputError. */
+    /* settings: of --set and --seed. Throws InputError. */
     StagedScenario(const std::filesystem::path &file, const std::vector<std::string> &settings);
     StagedScenario(const StagedScenario &) = delete;
     StagedScenario &operator=(const StagedScenario &) = delete;
@@ -31,6 +33,8 @@ class StagedScenario
     const std::string &name() const { return scenario_.name; }
     const Site &site() const { return crowd_ ? crowd_->site : staging_->site; }
     const KeyRing &keys() const { return keys_; }
+    const EffectiveScenario &effective() const { return effective_; }
+    const RunSettings &settings() const { return settings_; }
     /* The recorded site of a crowd; empty: a scene. */
     std::filesystem::path recorded() const { return crowd_ ? crowd_->recorded.file : std::filesystem::path(); }
     /* What cameras see; does not outlive this. Reads all frames of a crowd and throws InputError for those it cannot.
@@ -39,6 +43,8 @@ class StagedScenario
 
   private:
     Scenario scenario_;
+    EffectiveScenario effective_;
+    RunSettings settings_;
     std::optional<Crowd> crowd_; /* either this or a scene */
     std::optional<Staging> staging_;
     KeyRing keys_;

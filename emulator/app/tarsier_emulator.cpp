@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "options.h"
+#include "print_result.h"
 #include "run_site.h"
 #include "run_sweep.h"
 #include "staged_scenario.h"
@@ -70,9 +71,10 @@ Site with_absolute_folders(Site site)
     return site;
 }
 
-int run_alone(const Options &options, const Site &site, const KeyRing &keys, Pictures &pictures)
+int run_alone(const Options &options, const Site &site, const KeyRing &keys, Pictures &pictures,
+              const StagedScenario *scenario)
 {
-    print_result(options.out, run_site(options, options.out, "", site, keys, pictures));
+    print_result(options.out, run_site(options, options.out, "", site, keys, pictures, scenario));
     return exit_status();
 }
 
@@ -88,7 +90,7 @@ int run_recorded(const Options &options)
     check_nodes(site, keys);
     check_recorded(site);
     RecordedPictures pictures(site);
-    return run_alone(options, site, keys, pictures);
+    return run_alone(options, site, keys, pictures, nullptr);
 }
 
 int run_scenario(const Options &options)
@@ -101,7 +103,7 @@ int run_scenario(const Options &options)
         return run_sweep(options, settings);
     }
     const StagedScenario staged(options.site, settings);
-    return run_alone(options, staged.site(), staged.keys(), *staged.pictures(options.threads));
+    return run_alone(options, staged.site(), staged.keys(), *staged.pictures(options.threads), &staged);
 }
 
 int run(const Options &options)

@@ -32,6 +32,29 @@ function showBytes() {
   });
 }
 
+/* cause, colour, words: tsr/hal/air/loss.h has the causes. */
+const CAUSES = [["collision", "lost", "collision"], ["receiver_busy", "storage", "receiver busy with another frame"], ["half_duplex", "compute", "receiver sending (half duplex)"],
+  ["noise", "listen", "noise: too weak"], ["not_listening", "board", "receiver asleep or off"], ["link_fault", "failed", "link fault"]];
+
+function showLosses() {
+  const by = totals.air_lost_by, causes = CAUSES.filter(([cause]) => by[cause] > 0);
+  $("losses-note").textContent = totals.air_lost === 0 ? "" : `— ${number(totals.air_lost)} of ${number(totals.air_frames)}, acknowledgements included`;
+  if (causes.length === 0) { nothing("losses", "No frame was lost."); return; }
+  const most = Math.max(...causes.map(([cause]) => by[cause]));
+  chart("losses", {
+    label: "Frames lost on the radio by cause",
+    draw(width) {
+      const bar = 22, height = causes.length * bar + 50, p = plot(width, height, {x: [0, most * 1.02], y: [causes.length, 0], left: width < 560 ? 150 : 230, top: 4});
+      const parts = causes.map(([cause, colour, words], i) => text(0, p.y(i) + 15, width < 560 ? cause.replace("_", " ") : words, {title: words}) +
+        rect(p.x0, p.y(i) + 3, p.x(by[cause]) - p.x0, bar - 6, colour, `${words}: ${count(by[cause], "frame")}`));
+      return {height, body: p.axisX("frames", ticks(0, most, 5).filter(Number.isInteger)) + parts.join("")};
+    },
+    table: () => [["from", "to", "frames", "received", ...causes.map(([cause]) => cause.replace("_", " "))],
+      links.filter((link) => link.frames > link.received).map((link) => [nameOf(link.from), nameOf(link.to), link.frames, link.received, ...causes.map(([cause]) => link[`lost_by_${cause}`])])],
+    tableTitle: "links that lost data frames, each direction, as a table",
+  });
+}
+
 function showMapBytes() {
   if (maps.length === 0) { nothing("map-bytes", "No map was delivered."); return; }
   const series = [{name: "map", colour: "listen", values: maps.map((map) => map.map_bytes)},
@@ -65,10 +88,18 @@ function showLatency() {
   });
 }
 
-function galleryFigure({pair, why, numbers, ...pictures}) {
+/* Zones over a picture of the left view. */
+function zoneFrames(size, zones) {
+  if (zones.length === 0) return "";
+  const [width, height] = size;
+  return `<svg viewBox="0 0 ${width} ${height}" preserveAspectRatio="none">` + zones.map(([name, x, y, wide, high]) =>
+    `<g><rect x="${x}" y="${y}" width="${wide}" height="${high}"/><rect class="dash" x="${x}" y="${y}" width="${wide}" height="${high}"/><title>${escape(`zone ${name}`)}</title></g>`).join("") + "</svg>";
+}
+
+function galleryFigure({pair, why, numbers, size, zones, ...pictures}) {
   const views = [["left", "left view"], ["right", "right view"], ["reference", "reference image"], ["map", "map"], ["truth", "truth"], ["error", "error"]].filter(([key]) => pictures[key]);
   const {error} = numbers, judged = error ? `median error <b>${number(error.median_px, 2)} px</b>, ${error.median_mm === null ? "–" : short(error.median_mm)} mm; <b>${percent(error.correct)}</b> right; ` : "";
-  return `<figure><div class="views">${views.map(([key, words]) => `<div><img src="${pictures[key]}" alt="${words} of ${escape(pair)}">${words}</div>`).join("")}</div>` +
+  return `<figure><div class="views">${views.map(([key, words]) => `<div><div class="framed"><img src="${pictures[key]}" alt="${words} of ${escape(pair)}">${key === "right" ? "" : zoneFrames(size, zones)}</div>${words}</div>`).join("")}</div>` +
     `<figcaption><b>${escape(pair)}</b> at ${number(numbers.capture_time_s, 1)} s${why ? `, the <b>${why}</b>` : ""}: ${judged}` +
     `${number(numbers.map_bytes)} + ${number(numbers.reference_bytes)} bytes${numbers.kept ? "" : "; dropped by the sink"}</figcaption></figure>`;
 }
@@ -81,12 +112,13 @@ function showGallery() {
   $("gallery").innerHTML = gallery.map(galleryFigure).join("");
   if (gallery.length < DATA.gallery_of) $("gallery").insertAdjacentHTML("beforeend", `<p class="soft">${DATA.gallery_of - gallery.length} more are in maps/ beside this page.</p>`);
   if (gallery.some((one) => one.error)) {
-    $("gallery-legend").innerHTML = `<div class="legend"><span>map and truth: <i class="ramp"></i>far to near, black: nothing</span><span>error: <i class="ramp"></i>0 to 2 px, gray: no match, black: no truth</span></div>`;
+    $("gallery-legend").innerHTML = `<div class="legend"><span>map and truth: <i class="ramp"></i>far to near, black: nothing</span><span>error: <i class="ramp"></i>0 to 2 px, gray: no match, black: no truth</span>` +
+      (gallery.some((one) => one.zones.length > 0) ? "<span>frames: zones</span>" : "") + "</div>";
   }
   const judged = maps.filter((map) => map.error_median_px !== null);
   if (judged.length > 0) {
     histogram("error", {series: [{name: "maps", colour: "listen", values: judged.map((map) => map.error_median_px)}], quantity: "median error of a map", unit: "px", what: "maps", label: "Median error of maps against truth",
-      marks: [[totals.median_error_px.median, `median ${number(totals.median_error_px.median, 2)} px`]]});
+      marks: [[totals.error_median_px.median, `median ${number(totals.error_median_px.median, 2)} px`]]});
   }
   if (maps.length > 0) {
     addTable($("error"), `${count(maps.length, "map")} as a table`, () => [["pair", "capture, s", "latency, s", "bytes", "reference bytes", "kept", "matched pixels", "right", "median, px", "mean, px", "median, mm"],

@@ -83,6 +83,7 @@ function showPlan() {
         : node.role === "relay" ? `<path d="M${fixed(x)} ${fixed(y - size - 2)}l${size + 2} ${size + 2}l${-size - 2} ${size + 2}l${-size - 2} ${-size - 2}z" fill="var(--soft)" ${look}>${title}</path>`
           : `<circle cx="${fixed(x)}" cy="${fixed(y)}" r="${node.role === "wing" ? size - 1 : size}" fill="var(--${node.role === "wing" ? "view" : "camera"})" ${look}>${title}</circle>`);
     }
+    parts.push(faultsOnPlan(at, size, tree));
     if (few) parts.push(...placeLabels(nodes.map((node) => [...at(node), node.name]), size, width));
     return {height, body: parts.join("")};
   }
@@ -91,7 +92,7 @@ function showPlan() {
     label: `Plan of ${nodes.length} nodes and the tree that joins them`,
     draw,
     below: legend([...QUALITY.filter(([, colour]) => seen.has(colour)).map(([, colour, words]) => [colour, `link: ${words} of the frames received`]),
-      ["cone", "what a camera sees (not to scale)"], ["ink", "gateway"], ["camera", "camera"]]) + `<p class="soft note">A link is as wide as its bytes. ${thinnedNote(DATA.nodes, "nodes")}</p>`,
+      ["cone", "what a camera sees (not to scale)"], ["ink", "gateway"], ["camera", "camera"], ...faultLegend()]) + `<p class="soft note">A link is as wide as its bytes. ${thinnedNote(DATA.nodes, "nodes")}</p>`,
     table: () => [["from", "to", "hops", "frames", "received", "success", "acknowledged", "bytes", "dBm", "SNR, dB"],
       links.map((link) => [nameOf(link.from), nameOf(link.to), link.hops, link.frames, link.received, link.success, link.acknowledged, link.bytes, link.rssi_dbm, link.snr_db])],
     tableTitle: `${count(links.length, "link")} that were used, each direction, as a table`,

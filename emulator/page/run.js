@@ -12,19 +12,23 @@ const percent = (part) => `${number(100 * part, 1)} %`;
 function showHead() {
   $("title").textContent = summary.site;
   document.title = `Tarsier: ${summary.site}`;
+  const {scenario, set, baseline: views} = summary.settings;
   $("subtitle").textContent = `seed ${summary.seed}`;
+  $("settings").textContent = [scenario ?? "a site", `seed ${summary.seed}`, ...set.map((one) => `--set ${one}`), ...(views ? [`--baseline ${views}`] : [])].join(" · ");
   const notices = [], {baseline} = summary;
   if (baseline) notices.push(`A baseline: nodes send both views as JPEG of quality ${baseline.jpeg_quality}, ${baseline.views === "stream" ? "once a minute" : "of each change"}. Where this page says map, read the two pictures.`);
   const planned = summary.virtual_time_s < DATA.played_s ? ` of ${number(DATA.played_s, 1)} s` : ", before all that was under way had ended";
   if (summary.stopped) notices.push(`A part of a run: stopped by a signal after ${number(summary.virtual_time_s, 1)} s${planned}. The results are those of the time until then.`);
   else if (!summary.settled) notices.push("Something was still under way when the run ended.");
-  if (summary.sink_restarts > 0) notices.push(`The sink was started again ${count(summary.sink_restarts, "time")}.`);
+  const restarts = summary.faults.filter((fault) => fault.kind === "sink restart").length;
+  if (summary.sink_restarts > restarts) notices.push(`The sink was started again ${count(summary.sink_restarts, "time")}.`);
+  if (summary.faults.length > 0) notices.push(faultsInWords());
   $("notice").textContent = notices.join(" ");
   $("notice").hidden = notices.length === 0;
 }
 
 function showTiles() {
-  const {latency_s: latency, median_error_px: errorPx, median_error_mm: errorMm} = totals;
+  const {latency_s: latency, error_median_px: errorPx, error_median_mm: errorMm} = totals;
   const deepest = Math.max(...nodes.map((node) => node.hops));
   const pairs = nodes.filter(isCamera).length * DATA.nodes.of / nodes.length;
   const perMap = totals.maps_received > 0 ? `; ${bytes(Math.round(totals.air_bytes / totals.maps_received))} for each map delivered` : "";

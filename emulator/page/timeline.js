@@ -7,15 +7,30 @@ const PHASE_COLOUR = {waking: "listen", capturing: "storage", receiving: "listen
   filtering: "compute", encoding: "compute", sealing: "compute", sending: "send"};
 const END = Math.max(summary.virtual_time_s, 1e-3);
 
-function eventRow(x, y, left, right) {
-  const parts = [text(0, y + 12, "the scene", {kind: "soft"})];
-  const events = DATA.events.filter(([at]) => at <= END);
-  events.forEach(([at, what], i) => {
-    const place = x(at), next = i + 1 < events.length ? x(events[i + 1][0]) : right, title = `${what} at ${number(at, 1)} s`;
-    parts.push(`<g><path d="M${fixed(place)} ${y + 15}l-4 -7h8z" fill="var(--ink)"/><title>${escape(title)}</title></g>`);
-    if (place + what.length * 6 + 12 < next) parts.push(text(place + 7, y + 15, what, {kind: "small halo", title}));
+const EVENT_ROWS = 4, EVENT_ROW_HEIGHT = 15;
+/* A label goes to the first row that has room for it, the lowest only if no later mark is there; without any, its mark
+ * alone is there, with a title. */
+function eventRows(x, right) {
+  const ends = [];
+  const events = DATA.events.filter(([at]) => at <= END), places = events.map(([at]) => x(at));
+  return events.map(([at, what], i) => {
+    const place = places[i], long = what.length * 6 + 12, from = place + 7 + long <= right + 12 ? place : place - long - 7;
+    const marked = places.some((other, k) => k !== i && other > from - 4 && other < from + long);
+    let row = ends.findIndex((end, k) => end < from && !(k === 0 && marked));
+    if (row < 0 && ends.length === 0 && marked) ends.push(-Infinity);
+    if (row < 0 && ends.length < EVENT_ROWS) row = ends.push(-Infinity) - 1;
+    if (row >= 0) ends[row] = from + long;
+    return {place, row, what, before: from < place, title: `${what} at ${number(at, 1)} s`};
   });
-  return parts.join("");
+}
+
+function drawEvents(events, y, rows) {
+  const base = y + EVENT_ROW_HEIGHT * rows;
+  return text(0, base - 3, "the scene", {kind: "soft"}) + events.map(({place, row, what, before, title}) => {
+    const level = row < 0 ? base : base - EVENT_ROW_HEIGHT * row;
+    return `<g>${row > 0 ? line(place, level, place, base - 7) : ""}<path d="M${fixed(place)} ${fixed(base)}l-4 -7h8z" fill="var(--ink)"/><title>${escape(title)}</title></g>` +
+      (row < 0 ? "" : text(place + (before ? -7 : 7), level, what, {kind: "small halo", anchor: before ? "end" : "start", title}));
+  }).join("");
 }
 
 /* One row of columns over time. */
@@ -38,9 +53,8 @@ function binRow(x, y, height, left, title, series) {
 function faultMarks(x, laneOf, top, laneHeight, lanes) {
   return summary.faults.filter((fault) => fault.at_s <= END).map((fault) => {
     const lane = laneOf.get(fault.node), y = lane === undefined ? top : top + lane * laneHeight, high = lane === undefined ? lanes * laneHeight : laneHeight;
-    const until = Math.min(END, fault.for_s > 0 ? fault.at_s + fault.for_s : /reboot|restart/.test(fault.kind) ? fault.at_s : END);
-    const more = [fault.node && nameOf(fault.node), fault.other && `to ${nameOf(fault.other)}`, fault.for_s && `for ${number(fault.for_s, 2)} s`, fault.ppm && `${fault.ppm} ppm`, fault.loss_db && `${fault.loss_db} dB`,
-      fault.frame_loss && `${100 * fault.frame_loss} % of the frames`, fault.without_effect && "without effect: it was off"].filter(Boolean);
+    const until = Math.min(END, faultUntil(fault) ?? (/reboot|restart/.test(fault.kind) ? fault.at_s : END));
+    const more = [faultPlace(fault), fault.for_s && `for ${number(fault.for_s, 2)} s`, faultDetails(fault)].filter(Boolean);
     const title = `${fault.kind} at ${number(fault.at_s, 2)} s${more.map((one) => ", " + one).join("")}`;
     return `<g><rect x="${fixed(x(fault.at_s))}" width="${fixed(x(until) - x(fault.at_s))}" y="${fixed(y)}" height="${fixed(high)}" fill="var(--lost)" fill-opacity=".14"/>` +
       `<line x1="${fixed(x(fault.at_s))}" x2="${fixed(x(fault.at_s))}" y1="${fixed(y)}" y2="${fixed(y + high)}" stroke="var(--lost)" stroke-width="1.6" stroke-dasharray="3 2"/>` +
@@ -80,7 +94,11 @@ function showTimeline() {
     const left = width < 560 ? 84 : 128, right = width - 12, x = (t) => left + (right - left) * Math.min(t, END) / END;
     let y = 6;
     const parts = [];
-    if (hasEvents) { parts.push(eventRow(x, y, left, right)); y += 28; }
+    if (hasEvents) {
+      const events = eventRows(x, right), rows = 1 + Math.max(0, ...events.map((one) => one.row));
+      parts.push(drawEvents(events, y, rows));
+      y += EVENT_ROW_HEIGHT * rows + 13;
+    }
     parts.push(binRow(x, y, 30, left, "frames", [["looks", "look", "frames watched"]])); y += 42;
     parts.push(binRow(x, y, 30, left, "woken", [["woken", "listen", "frames woke a pair"]])); y += 42;
     parts.push(binRow(x, y, 64, left, "outcome", FATES.map(([key, colour, words]) => [key, colour, words]))); y += 82;

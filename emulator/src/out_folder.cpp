@@ -31,7 +31,7 @@ constexpr const char *kUnfinished = "unfinished";
 constexpr std::array kNames = {"site.toml",  "keys.toml", "sink.db",      "sink.db-wal",    "sink.db-shm",
                                "sink.log",   "sink.json", "summary.json", "capture.pcapng", "index.html",
                                "cloud.ply",  "maps",      "nodes.csv",    "links.csv",      "maps.csv",
-                               "events.csv", "sweep.csv", "runs",         "pictures"};
+                               "events.csv", "sweep.csv", "runs",         "pictures",       "scenario.toml"};
 
 } // namespace
 

@@ -3,7 +3,7 @@
  *
  * The page (emulator/page/) holds one mark for its data, which becomes a JSON object:
  *
- *   summary   summary.json without nodes, pairs and links
+ *   summary   summary.json without nodes, pairs, links and events of zones
  *   played_s  how long there was something to see
  *   nodes, links, maps   {of, columns, rows}: the tables of table.h; of: rows before they were thinned
  *   timeline  {bin_s, looks, woken, committed, withheld, lost, failed}: numbers of each bin
@@ -11,8 +11,12 @@
  *   phases    [[s, node, phase], ...] of work; empty if there are many
  *   messages  {of, rows: [[s, node, kind], ...]}: committed ones that are no maps
  *   events    [[s, what], ...] that the scene tells
- *   gallery   [{pair, why, numbers, left, right, reference, map, truth, error}, ...]: numbers as in summary.json, data
- *             URLs or ""; left and right are a baseline's
+ *   zone_events  {of, rows: [[s, node, zone, kind, depth m, area %, latency s, true depth m], ...], newest}: oldest
+ *             first; newest: the last ones, of all
+ *   faults_of how many came: summary.faults is thinned
+ *   gallery   [{pair, why, numbers, size, zones, left, right, reference, map, truth, error}, ...]: numbers as in
+ *             summary.json; size [width, height] and zones [[name, x, y, width, height], ...] of the left picture, px;
+ *             data URLs or "", left and right are a baseline's
  *   gallery_of  how many were chosen: the last ones may not fit
  *   cloud     {of, count, low, step, positions, colours}: base64 of count x 3 uint16 and count x 3 bytes;
  *             position = low + step * value, m
@@ -25,6 +29,7 @@
  */
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "page_data.h"
 #include "page_template.h"
@@ -48,6 +53,8 @@ constexpr std::size_t kMapsMax = 3000;
 constexpr std::size_t kEpisodesMax = 5000;
 constexpr std::size_t kPhasesMax = 8000;
 constexpr std::size_t kMessagesMax = 3000;
+constexpr std::size_t kZoneEventsMax = 3000;
+constexpr std::size_t kNewestMax = 300;
 constexpr std::size_t kEventsMax = 500;
 constexpr std::size_t kBinsMax = 240;
 constexpr std::size_t kGalleryBytesMax = 1'600'000; /* as base64 */
@@ -158,6 +165,33 @@ Json events_json(const RunRecord &run)
     });
 }
 
+Json zone_events_json(const RunRecord &run)
+{
+    const auto print = [](const ReceivedEvent &event) {
+        const Json json = json_of(event);
+        Json row = Json::array();
+        for (const char *key :
+             {"capture_time_s", "node", "zone", "kind", "depth_m", "area_percent", "latency_s", "true_depth_m"}) {
+            row.push_back(json.at(key));
+        }
+        return row;
+    };
+    const std::size_t newest = std::min(run.zone_events.size(), kNewestMax);
+    const std::span<const ReceivedEvent> all(run.zone_events);
+    return {{"of", run.zone_events.size()},
+            {"rows", thinned(run.zone_events, kZoneEventsMax, print)},
+            {"newest", thinned(all.last(newest), kNewestMax, print)}};
+}
+
+Json zones_json(const SitePair *pair)
+{
+    Json json = Json::array();
+    for (const SiteZone &zone : pair != nullptr ? pair->zones : std::vector<SiteZone>{}) {
+        json.push_back(Json::array({zone.name, zone.part.x, zone.part.y, zone.part.width, zone.part.height}));
+    }
+    return json;
+}
+
 std::string picture_url(const std::filesystem::path &file)
 {
     const std::string type = file.extension() == ".jpg" ? "jpeg" : "png";
@@ -174,6 +208,8 @@ Json gallery_json(const std::filesystem::path &out, const std::vector<GalleryMap
         Json entry{{"pair", shown.pair != nullptr ? shown.pair->name : ""},
                    {"why", shown.why},
                    {"numbers", json_of(*shown.map)},
+                   {"size", shown.pair != nullptr ? Json::array({shown.pair->width, shown.pair->height}) : Json()},
+                   {"zones", zones_json(shown.pair)},
                    {"left", picture_url(file + "-left.jpg")},
                    {"right", picture_url(file + "-right.jpg")},
                    {"reference", picture_url(file + "-reference.png")},
@@ -206,7 +242,7 @@ double last_pair_share(const Site &site)
 
 Json summary_head(Json summary)
 {
-    for (const char *key : {"nodes", "pairs", "links"}) {
+    for (const char *key : {"nodes", "pairs", "links", "events"}) {
         summary.erase(key);
     }
     Json &faults = summary.at("faults");
@@ -229,6 +265,8 @@ void write_page(const std::filesystem::path &out, const Json &summary, const Run
                     {"phases", phases_json(run)},
                     {"messages", messages_json(run)},
                     {"events", events_json(run)},
+                    {"zone_events", zone_events_json(run)},
+                    {"faults_of", summary.at("faults").size()},
                     {"gallery", gallery_json(out, gallery)},
                     {"gallery_of", gallery.size()},
                     {"cloud", cloud_json(out / "cloud.ply")},

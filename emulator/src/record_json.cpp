@@ -82,6 +82,15 @@ Json work_json(const NodeRecord &node)
     return work;
 }
 
+Json losses_json(const air::LossTally &tally)
+{
+    Json json = Json::object();
+    for (std::size_t cause = 1; cause < tally.size(); ++cause) {
+        json[air::kLossNames.at(cause)] = tally.at(cause);
+    }
+    return json;
+}
+
 Json drops_json(const tsr_node_counters &counters, const tsr_mac_counters &mac)
 {
     return {{"route", counters.dropped_route},          {"format", counters.dropped_format},
@@ -162,7 +171,11 @@ Json json_of(const NodeRecord &node)
               {"unacknowledged", node.mac.unacknowledged},
               {"channel_busy", node.mac.channel_busy},
               {"received", node.mac.received}}},
-            {"air", {{"frames", node.air.frames}, {"bytes", node.air.bytes}, {"lost", node.air.lost}}},
+            {"air",
+             {{"frames", node.air.frames},
+              {"bytes", node.air.bytes},
+              {"lost", node.air.lost},
+              {"lost_by", losses_json(node.air.lost_by)}}},
             {"dropped", drops_json(counters, node.mac)},
             {"energy_mj", energy_json(node.energy)},
             {"active_mj", rounded(node.active_mj, 3)},
@@ -185,6 +198,7 @@ Json json_of(const LinkRecord &link)
             {"frames", data.frames},
             {"received", link.tally.received},
             {"received_bytes", link.tally.received_bytes},
+            {"lost_by", losses_json(link.tally.lost)},
             {"acknowledged", link.tally.acknowledged},
             {"acknowledgements", link.tally.acknowledgements.frames},
             {"success", data.frames > 0 ? Json(rounded(success, 4)) : Json()},
@@ -218,7 +232,8 @@ Json json_of(const ReceivedEvent &event)
             {"capture_time_s", rounded(seconds(event.capture_time_us), 6)},
             {"latency_s", event.commit_time_us ? Json(rounded(latency(), 6)) : Json()},
             {"area_percent", rounded(event.area_percent, 2)},
-            {"depth_m", event.depth_m ? Json(rounded(*event.depth_m, 4)) : Json()}};
+            {"depth_m", event.depth_m ? Json(rounded(*event.depth_m, 4)) : Json()},
+            {"true_depth_m", event.true_depth_m ? Json(rounded(*event.true_depth_m, 4)) : Json()}};
 }
 
 Json json_of(const FaultNote &note)

@@ -61,6 +61,7 @@ Simulation::Simulation(const Site &site, const KeyRing &keys, Pictures &pictures
         ++tally.frames;
         tally.bytes += frame.psdu_len;
         tally.lost += frame.lost_at;
+        tally.lost_by.at(static_cast<std::size_t>(frame.cause)) += frame.lost_at;
         const bool acknowledges = frame.acknowledged != AirFrame::kNobody;
         traffic_.count(frame, nodes_[frame.sender]->id(), acknowledges ? nodes_[frame.acknowledged]->id() : kNodeNone);
         if (capture_ != nullptr) {

@@ -18,7 +18,7 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kSummaryFormat = 2;
+constexpr int kSummaryFormat = 3;
 constexpr std::array kCounts = {"frames_watched", "frames_woken", "captures_failed", "maps_made",    "maps_withheld",
                                 "maps_measured",  "maps_sent",    "maps_lost",       "maps_received"};
 
@@ -51,6 +51,18 @@ Json traffic_json(const RunDigest &digest)
     return traffic;
 }
 
+/* Sums over the nodes. */
+Json lost_by_json(const Json &nodes)
+{
+    Json sums = Json::object();
+    for (const Json &node : nodes) {
+        for (const auto &[cause, frames] : node.at("air").at("lost_by").items()) {
+            sums[cause] = sums.value(cause, std::uint64_t{0}) + frames.get<std::uint64_t>();
+        }
+    }
+    return sums;
+}
+
 /* nodes: as JSON, in the order of the records. */
 Json totals_json(const RunRecord &run, const Json &nodes)
 {
@@ -67,17 +79,20 @@ Json totals_json(const RunRecord &run, const Json &nodes)
     for (const NodeRecord &node : run.nodes) {
         air.frames += node.air.frames;
         air.bytes += node.air.bytes;
+        air.lost += node.air.lost;
         energy_mj += node.energy.total();
     }
     totals["air_frames"] = air.frames;
     totals["air_bytes"] = air.bytes;
+    totals["air_lost"] = air.lost;
+    totals["air_lost_by"] = lost_by_json(nodes);
     totals["energy_mj"] = rounded(energy_mj, 3);
     totals["active_mj"] = rounded(run.digest.active_mj, 3);
     totals["active_mj_per_map"] =
         run.digest.active_mj_per_map > 0 ? Json(rounded(run.digest.active_mj_per_map, 4)) : Json();
     totals["latency_s"] = quantiles_json(run.digest.latency_s, 6);
-    totals["median_error_px"] = quantiles_json(run.digest.error_px, 4);
-    totals["median_error_mm"] = quantiles_json(run.digest.error_mm, 2);
+    totals["error_median_px"] = quantiles_json(run.digest.error_px, 4);
+    totals["error_median_mm"] = quantiles_json(run.digest.error_mm, 2);
     totals["correct_median"] = run.digest.correct ? Json(rounded(*run.digest.correct, 4)) : Json();
     totals["shortest_life_node"] = run.digest.shortest_life;
     totals["shortest_life_days"] = days_json(run.digest.shortest_life_days);
@@ -111,12 +126,27 @@ Json pairs_json(const RunRecord &run, const Json &nodes)
     return pairs;
 }
 
+const char *views_name(const Baseline &baseline)
+{
+    return baseline.stream ? "stream" : "changes";
+}
+
 Json baseline_json(const std::optional<Baseline> &baseline)
 {
     if (!baseline) {
         return {};
     }
-    return {{"views", baseline->stream ? "stream" : "changes"}, {"jpeg_quality", baseline->quality}};
+    return {{"views", views_name(*baseline)}, {"jpeg_quality", baseline->quality}};
+}
+
+/* No folder of the machine: the same command gives the same bytes everywhere. */
+Json settings_json(const RunRecord &run)
+{
+    const auto &baseline = run.simulation->baseline();
+    return {{"scenario", run.settings.scenario.empty() ? Json() : Json(run.settings.scenario)},
+            {"seed", run.site->seed},
+            {"set", run.settings.set},
+            {"baseline", baseline ? Json(views_name(*baseline)) : Json()}};
 }
 
 template <typename Records> Json array_of(const Records &records)
@@ -137,6 +167,7 @@ Json make_summary(const RunRecord &run)
     return {{"format", kSummaryFormat},
             {"site", site.name},
             {"seed", site.seed},
+            {"settings", settings_json(run)},
             {"baseline", baseline_json(run.simulation->baseline())},
             {"virtual_time_s", rounded(static_cast<double>(run.simulation->duration_us()) / 1e6, 6)},
             {"stopped", run.simulation->stopped()},

@@ -94,8 +94,8 @@ void add_errors(const Json &summary, Json &figures)
     }
     const Json &totals = summary.at("totals");
     figures["error_mean_px"] = mean(sum_px, maps, 4);
-    figures["error_median_px"] = quantile(totals.at("median_error_px"), "median");
-    figures["error_median_mm"] = quantile(totals.at("median_error_mm"), "median");
+    figures["error_median_px"] = quantile(totals.at("error_median_px"), "median");
+    figures["error_median_mm"] = quantile(totals.at("error_median_mm"), "median");
     figures["matched"] = mean(static_cast<double>(matched_pixels), truth_pixels, 4);
     figures["correct"] = totals.at("correct_median");
 }
@@ -114,6 +114,7 @@ Json figures_of(const Json &summary)
     figures["latency_s_p95"] = quantile(totals.at("latency_s"), "p95");
     add_events(summary, figures);
     figures["air_bytes"] = totals.at("air_bytes");
+    figures["air_lost"] = totals.at("air_lost");
     add_energy(summary, figures);
     add_errors(summary, figures);
     return figures;

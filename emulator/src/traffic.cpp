@@ -116,6 +116,7 @@ void Traffic::count(const AirFrame &frame, std::uint16_t sender, std::uint16_t r
     kind.bytes += frame.psdu_len;
     link.received += frame.lost_at == 0 ? 1 : 0;
     link.received_bytes += frame.lost_at == 0 ? frame.psdu_len : 0;
+    link.lost.at(static_cast<std::size_t>(frame.cause)) += frame.lost_at;
 }
 
 void Traffic::hear_sink(std::uint64_t time_us, const std::vector<std::uint8_t> &answer)

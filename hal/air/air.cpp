@@ -120,7 +120,7 @@ tsr_status Air::configure(void *radio, std::uint8_t channel, std::uint16_t pan_i
     Air &air = *self.air;
     self.channel = channel;
     self.pan_id = pan_id;
-    self.address = address;
+    self.address = self.last_address = address;
     air.fade_ended();
     self.receiver().tune(channel, air.levels_at(self.index, channel), air.clock_.now_us());
     return TSR_OK;
@@ -213,13 +213,14 @@ void Air::arrive(Transmission &transmission)
     signal.end_us = transmission.end_us;
     signal.channel = transmission.channel;
     const auto &links = neighbours_.of(transmission.sender);
-    transmission.levels_q4.reserve(links.size());
+    transmission.arrivals.reserve(links.size());
     for (const air::Link &link : links) {
         signal.level_q4 = link.mean_q4 +
                           propagation_.fading_q4(transmission.sender, link.radio, transmission.start_us) -
                           losses_.loss_q4(transmission.sender, link.radio);
-        transmission.levels_q4.push_back(signal.level_q4);
-        if (receivers_[link.radio].begin(signal) && !is_for(transmission, *radios_[link.radio])) {
+        const air::Reception reception = receivers_[link.radio].begin(signal);
+        transmission.arrivals.push_back({signal.level_q4, cause_of_miss(*radios_[link.radio], reception)});
+        if (reception == air::Reception::followed && !is_for(transmission, *radios_[link.radio])) {
             receivers_[link.radio].disregard();
         }
     }
@@ -233,7 +234,7 @@ void Air::fade(Transmission &transmission)
     const std::uint64_t now_us = clock_.now_us();
     const auto &links = neighbours_.of(transmission.sender);
     for (std::size_t i = 0; i < links.size(); ++i) {
-        receivers_[links[i].radio].fade(transmission.levels_q4[i], transmission.channel, now_us);
+        receivers_[links[i].radio].fade(transmission.arrivals[i].level_q4, transmission.channel, now_us);
     }
     transmission.faded = true;
     std::erase(on_air_, &transmission);
@@ -261,7 +262,7 @@ std::vector<int> Air::levels_at(std::size_t radio, std::uint8_t channel) const
         const auto link =
             std::find_if(links.begin(), links.end(), [radio](const air::Link &one) { return one.radio == radio; });
         if (transmission->channel == channel && link != links.end()) {
-            levels_q4.push_back(transmission->levels_q4[static_cast<std::size_t>(link - links.begin())]);
+            levels_q4.push_back(transmission->arrivals[static_cast<std::size_t>(link - links.begin())].level_q4);
         }
     }
     return levels_q4;
@@ -286,8 +287,10 @@ std::vector<Air::Receipt> Air::leave(Transmission &transmission)
     std::vector<Receipt> heard;
     for (const air::Link &link : neighbours_.of(transmission.sender)) {
         const air::Outcome outcome = receivers_[link.radio].end(transmission.number);
-        if (outcome.success_q32 > 0 && chance_keeps(transmission, link.radio, outcome.success_q32)) {
+        if (outcome.followed && chance_keeps(transmission, link.radio, outcome.success_q32)) {
             heard.push_back({radios_[link.radio].get(), outcome.level_q4});
+        } else if (outcome.followed) {
+            transmission.broken = outcome;
         }
     }
     return heard;

@@ -15,11 +15,16 @@
 namespace tsr
 {
 
+/* UQ0.32. */
+std::uint64_t Air::draw_of(const Transmission &transmission, std::size_t receiver) const
+{
+    return air::mix(air::mix(seed_ + transmission.number) + receiver) >> 32;
+}
+
 bool Air::chance_keeps(const Transmission &transmission, std::size_t receiver, std::uint64_t success_q32) const
 {
-    const std::uint64_t draw = air::mix(air::mix(seed_ + transmission.number) + receiver);
     const std::uint64_t kept_q32 = air::both_q32(kept_q32_, losses_.kept_q32(transmission.sender, receiver));
-    return (draw >> 32) < air::both_q32(success_q32, kept_q32);
+    return draw_of(transmission, receiver) < air::both_q32(success_q32, kept_q32);
 }
 
 void Air::deliver(const Receipt &receipt, const Transmission &transmission)
@@ -61,6 +66,7 @@ void Air::end_ack(const Transmission &transmission, AirFrame frame, AirFate fate
                      });
     frame.lost_at = got ? 0 : 1;
     frame.acknowledged = to.index;
+    frame.cause = got ? air::LossCause::none : cause_of_loss(transmission, fate);
     if (tap_) {
         tap_(frame);
     }
@@ -90,6 +96,9 @@ void Air::end_data(const Transmission &transmission, AirFrame frame, AirFate fat
     }
     if (addressed) {
         frame.lost_at = broadcast ? broadcast_losses(transmission, got.size()) : got.empty();
+    }
+    if (frame.lost_at > 0 && !broadcast) {
+        frame.cause = cause_of_loss(transmission, fate);
     }
     if (tap_) {
         tap_(frame);

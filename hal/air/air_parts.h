@@ -29,6 +29,7 @@ struct Air::Radio {
     std::uint8_t channel = 0;
     std::uint16_t pan_id = 0;
     std::uint16_t address = 0;
+    std::uint16_t last_address = 0; /* without power too */
     bool receiving = false;
     bool turning = false;           /* from a clear channel to the transmission: deaf */
     bool sending = false;           /* a PSDU of its own is on air: frame or acknowledgement */
@@ -44,6 +45,11 @@ struct Air::Radio {
     mutable std::uint64_t accounted_us = 0;
 };
 
+struct Arrival {
+    int level_q4;          /* dBm */
+    air::LossCause missed; /* at its begin; none: followed */
+};
+
 struct Air::Transmission {
     std::uint64_t number = 0;
     std::size_t sender = 0;
@@ -56,8 +62,24 @@ struct Air::Transmission {
     std::uint64_t frame_end_us = 0; /* of the frame it acknowledges */
     bool cut = false;               /* its sender lost its power */
     bool faded = false;             /* nobody hears it any more, though its end may still be to come at this instant */
-    std::vector<int> levels_q4;     /* dBm at each of the sender's neighbours, in their order */
+    std::vector<Arrival> arrivals;  /* at each of the sender's neighbours, in their order */
+    air::Outcome broken;            /* of the receiver that followed it and has it wrong */
 };
+
+inline air::LossCause Air::cause_of_miss(const Radio &radio, air::Reception reception)
+{
+    using air::LossCause;
+    using air::Reception;
+    switch (reception) {
+    case Reception::followed: return LossCause::none;
+    case Reception::other_channel: return LossCause::not_listening;
+    case Reception::deaf: return radio.sending || radio.turning ? LossCause::half_duplex : LossCause::not_listening;
+    case Reception::weak: return LossCause::noise;
+    case Reception::busy: return LossCause::receiver_busy;
+    case Reception::hidden: return LossCause::collision;
+    }
+    return LossCause::none;
+}
 
 namespace air
 {

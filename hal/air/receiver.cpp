@@ -74,26 +74,31 @@ void Receiver::settle(std::uint64_t now_us)
 }
 
 /* Not yet added. The cheap questions come first: most signals are too weak or come too late. */
-bool Receiver::takes(const Signal &signal) const
+Reception Receiver::reception_of(const Signal &signal) const
 {
-    if (!listening_ || signal.level_q4 < model_->lock_min_q4) {
-        return false;
+    if (!listening_) {
+        return Reception::deaf;
+    }
+    if (signal.level_q4 < model_->lock_min_q4) {
+        return Reception::weak;
     }
     if (locked_ && (signal.start_us >= followed_.start_us + kSynchronisationUs ||
                     signal.level_q4 < followed_.level_q4 + model_->capture_q4)) {
-        return false;
+        return Reception::busy;
     }
-    return is_at_most(model_->noise + interference_, signal.level_q4 - kLockSinrQ4);
+    const bool clear = is_at_most(model_->noise + interference_, signal.level_q4 - kLockSinrQ4);
+    return clear ? Reception::followed : Reception::hidden;
 }
 
-bool Receiver::begin(const Signal &signal)
+Reception Receiver::begin(const Signal &signal)
 {
     if (signal.channel != channel_) {
-        return false;
+        return Reception::other_channel;
     }
     settle(signal.start_us);
-    const bool taken = takes(signal);
-    if (taken) {
+    const Reception reception = reception_of(signal);
+    if (reception == Reception::followed) {
+        overtaken_ = locked_ ? followed_.number : overtaken_;
         locked_ = wanted_ = true;
         followed_ = signal;
         success_q32_ = kCertainQ32;
@@ -101,7 +106,7 @@ bool Receiver::begin(const Signal &signal)
     }
     add(signal.level_q4);
     sense(signal.start_us);
-    return taken;
+    return reception;
 }
 
 void Receiver::fade(int level_q4, std::uint8_t channel, std::uint64_t now_us)
@@ -119,7 +124,7 @@ Outcome Receiver::end(std::uint64_t number)
         return {};
     }
     locked_ = false;
-    return wanted_ ? Outcome{success_q32_, followed_.level_q4} : Outcome{};
+    return wanted_ ? Outcome{true, success_q32_, followed_.level_q4} : Outcome{};
 }
 
 void Receiver::start_cca(std::uint64_t now_us)

@@ -10,55 +10,22 @@
  *
  * SPDX-License-Identifier: Apache-2.0
  */
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <optional>
 
 #include "tsr/host/input_error.h"
 #include "tsr/scenario/virtual_camera.h"
+#include "tsr/scenario/zone_truth.h"
 
 namespace
 {
 
-constexpr double kBandPx = 1;
-
-/* Of all of the zone's pixels; those that count are moved to the front. */
-std::size_t count(const tsr::SitePair &pair, const tsr::SiteZone &zone, std::vector<double> &disparities)
-{
-    double low = -1e9, high = 1e9;
-    if (zone.kind == tsr::ZoneKind::changed) {
-        const auto middle = disparities.begin() + static_cast<std::ptrdiff_t>((disparities.size() - 1) / 2);
-        std::nth_element(disparities.begin(), middle, disparities.end());
-        low = *middle - kBandPx;
-        high = *middle + kBandPx;
-    } else {
-        (zone.kind == tsr::ZoneKind::below ? low : high) = tsr::disparity_at(pair, zone.depth_m);
-    }
-    const auto end =
-        std::partition(disparities.begin(), disparities.end(), [&](double d) { return d >= low && d <= high; });
-    return static_cast<std::size_t>(end - disparities.begin());
-}
-
 void print_look(const tsr::SitePair &pair, const tsr::SiteZone &zone, std::uint64_t time_us,
                 const tsr::FloatImage &truth)
 {
-    std::vector<double> disparities;
-    for (int y = zone.part.y; y < zone.part.y + zone.part.height; y++) {
-        for (int x = zone.part.x; x < zone.part.x + zone.part.width; x++) {
-            const double d = static_cast<double>(truth.pixels[static_cast<std::size_t>(y * truth.width + x)]);
-            disparities.push_back(std::isfinite(d) ? d : -pair.d0_px); /* the sky is infinitely far */
-        }
-    }
-    const std::size_t counted = count(pair, zone, disparities);
-    double sum = 0;
-    for (std::size_t i = 0; i < counted; i++) {
-        sum += disparities[i];
-    }
+    const tsr::ZoneTruth known = tsr::zone_truth(pair, zone, truth);
     std::printf("%d,%s,%llu,%.4f,", pair.lead, zone.name.c_str(), static_cast<unsigned long long>(time_us),
-                static_cast<double>(counted) / static_cast<double>(disparities.size()));
-    const double divisor = counted > 0 ? sum / static_cast<double>(counted) + pair.d0_px : 0;
-    divisor > 0 ? std::printf("%.4f\n", pair.focal_px * pair.baseline_mm / 1000 / divisor) : std::printf("\n");
+                known.share);
+    known.depth_m ? std::printf("%.4f\n", *known.depth_m) : std::printf("\n");
 }
 
 void watch(const tsr::Scenario &scenario, const tsr::Staging &staging, const tsr::StagedCamera &staged)

@@ -59,6 +59,9 @@ with tempfile.TemporaryDirectory() as folder:
     files = results(folder / "a")
     check(files == results(folder / "b"), "two runs of one seed differ")
     check(files["capture.pcapng"] != results(folder / "c")["capture.pcapng"], "the seed changes nothing")
+    (folder / "deeper").mkdir()
+    emulate(folder / "a/scenario.toml", folder / "deeper/again")
+    check(results(folder / "deeper/again")["capture.pcapng"] == files["capture.pcapng"], "a run's scenario.toml gives another run")
     maps = stored_maps(folder / "a")
     check(len({digest for _, digest in maps}) > 2, "all copies see the same")
 

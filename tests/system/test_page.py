@@ -48,7 +48,13 @@ def check_numbers(out, summary, data):
         sent = sum(link["frames"] for link in links if link["from"] == node["id"])
         acknowledged = sum(link["acknowledgements"] for link in links if link["to"] == node["id"])
         check(sent + acknowledged == told["air"]["frames"], f"{node['name']}: links and air differ")
+        told_losses = told["air"]["lost_by"]
+        check(sum(told_losses.values()) == told["air"]["lost"] == node["air_lost"], f"{node['name']}: losses {told_losses}")
+    for link in links:
+        causes = sum(value for name, value in link.items() if name.startswith("lost_by_"))
+        check(causes == link["frames"] - link["received"], f"{link}: lost frames without a cause")
     totals = data["summary"]["totals"]
+    check(totals["air_lost"] == sum(totals["air_lost_by"].values()) > 0, f"losses {totals['air_lost_by']}")
     check(totals == summary["totals"], "other totals in the page")
     check(sum(entry["bytes"] for entry in totals["traffic"]) == totals["air_bytes"], "bytes of kinds and hops do not add up")
     maps = [dict(zip(data["maps"]["columns"], row)) for row in data["maps"]["rows"]]
@@ -73,6 +79,18 @@ def check_gallery(out, data):
         check((out / f"{name}-error.png").exists(), f"no error picture of {name}")
 
 
+def check_events(summary, data):
+    """Zones, their events, faults and settings are those of the summary."""
+    told, events = data["zone_events"], summary["events"]
+    keys = ("capture_time_s", "node", "zone", "kind", "depth_m", "area_percent", "latency_s", "true_depth_m")
+    check(told["of"] == len(events) >= 3 and told["rows"] == told["newest"] == [[event[key] for key in keys] for event in events], "other events in the page")
+    check(all(abs(event["depth_m"] / event["true_depth_m"] - 1) < 0.1 for event in events), f"depths and their truth: {events}")
+    check(all(entry["zones"] == [["surface", 40, 36, 18, 12]] and entry["size"] == [96, 72] for entry in data["gallery"]), "zones of the gallery")
+    check(data["faults_of"] == len(summary["faults"]) == 1 and data["summary"]["faults"] == summary["faults"], "other faults in the page")
+    expected = {"scenario": "page.toml", "seed": 4, "set": ["scene.clutter=0.5"], "baseline": None}
+    check(data["summary"]["settings"] == summary["settings"] == expected, f"settings {summary['settings']}")
+
+
 def check_self_contained(file):
     text = file.read_text()
     check(file.stat().st_size < PAGE_BYTES_MAX, f"{file.stat().st_size} bytes")
@@ -87,12 +105,14 @@ with tempfile.TemporaryDirectory() as folder:
     scenario = folder / "page.toml"
     scenario.write_text(PAGE_SCENARIO)
     out = folder / "out"
-    summary = emulate(scenario, out)
+    summary = emulate(scenario, out, "--seed", "4", "--set", "scene.clutter=0.5")
     data = page_data(out)
     check(data["summary"]["stopped"] is False and data["summary"]["settled"], "the run did not end")
     check_tables(out, data)
     maps = check_numbers(out, summary, data)
     check_gallery(out, data)
+    check_events(summary, data)
+    check(str(folder) not in (out / "index.html").read_text() + (out / "summary.json").read_text(), "a folder of this machine is told")
     check_self_contained(out / "index.html")
 
     part = folder / "part"

@@ -1,10 +1,12 @@
 """A browser draws the page of a run, and that of a sweep, without an error: every chart and table, light and dark, on a desk and on a phone, nothing wider than the screen."""
 # SPDX-License-Identifier: Apache-2.0
+import csv
 import html
 import json
 import pathlib
 import re
 import shutil
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -13,7 +15,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from run_page import PAGE_SCENARIO
 from run_site import BUILD, check, emulate, skip
 
-CHARTS = ("plan", "timeline", "energy-all", "energy-rest", "bytes", "map-bytes", "latency", "latency-hops", "error")
+CHARTS = ("plan", "timeline", "energy-all", "energy-rest", "bytes", "map-bytes", "latency", "latency-hops", "error", "losses", "zone-chart-0")
+OPEN_TABLES = 2  # faults and events of zones; all others are in a chart's details
 DATA = re.compile(r'<script id="data" type="application/json">(.*?)</script>', re.DOTALL)
 # The page in a frame, since a browser's window is not narrower than 500 px: opens every table, then shows what the frame has.
 FRAME = """<!doctype html><body style="margin:0"><iframe width="%d" height="2000" style="border:0" srcdoc="%s"></iframe><script>
@@ -71,7 +74,10 @@ def check_drawn(dom, console, width, charts):
     for chart in charts:
         drawn = re.search(rf'<div id="{chart}"><div><svg[^>]*aria-label="[^"]+"', dom)
         check(drawn is not None, f"{width} px: no chart {chart}")
-    check(dom.count("<table>") == dom.count("<details") >= len(CHARTS), f"{width} px: a chart has no table")
+    details = dom.count("<details")
+    check(dom.count("<table>") == details + OPEN_TABLES and details >= 10, f"{width} px: a chart has no table")
+    check("camera failure of pair 2" in dom and re.search(r"<td[^>]*>camera failure</td>", dom), f"{width} px: the fault is not told")
+    check(dom.count('class="dash"') == 4 * dom.count("<figure>") > 0, f"{width} px: zones are not drawn")
     tiles = dom.count('class="tile"')
     check(tiles == 8, f"{width} px: {tiles} tiles")
     return dom
@@ -92,6 +98,28 @@ def check_sweep(browser, scenario, folder):
         links = re.findall(r'href="(runs/\d+/index.html)"', dom)
         check(len(links) == 6 and all((out / link).exists() for link in links), f"{width} px: links {links}")
         check("pairs.count = 3" in dom, f"{width} px: a line has no name")
+        figures = re.findall(r'id="figure-(\w+)"', dom)
+        others = [i for i, name in enumerate(figures) if not re.match("maps_received|error_|matched|correct", name)]
+        check("error_median_px" in figures[:others[0]], f"{width} px: errors are not first in {figures}")
+
+
+def check_seeds(browser, scenario, folder):
+    """Seeds are no lines: a point is their mean, with whiskers."""
+    out = folder / "seeds"
+    words = [BUILD / "bin/tarsier-emulator", scenario, "--out", out, "--quiet", "--sweep", "seed=1,2,3", "--sweep", "pairs.baseline_mm=60,90"]
+    subprocess.run(words, check=True, stdout=subprocess.DEVNULL)
+    rows = [row for row in csv.DictReader((out / "sweep.csv").open(newline=""))]
+    check(len(rows) == 6, f"{len(rows)} rows: one for each run")
+    means = [statistics.mean(float(row["air_bytes"]) for row in rows if row["pairs.baseline_mm"] == value) for value in ("60", "90")]
+    framed = folder / "framed.html"
+    for width in (1400, 390):
+        framed.write_text(FRAME % (width, html.escape((out / "index.html").read_text())))
+        dom = check_clean(*browse(browser, framed), width)
+        chart = re.search(r'<div id="figure-air_bytes"><div><svg.*?</svg>', dom, re.DOTALL)
+        check(chart is not None and chart[0].count("<circle") == 2 and chart[0].count('class="whisker"') == 2, f"{width} px: no mean over seeds")
+        shown = [float(value.replace(",", "")) for value in re.findall(r"mean ([0-9.,]+) of 3 seeds", chart[0])]
+        check(all(abs(one / mean - 1) < 0.01 for one, mean in zip(shown, means, strict=True)), f"{width} px: means {shown}, in the table {means}")
+        check("mean over 3 seeds, whiskers: least to largest" in dom, f"{width} px: nothing says what the whiskers are")
 
 
 browser = shutil.which("chromium")
@@ -119,4 +147,5 @@ with tempfile.TemporaryDirectory() as folder:
         dom = check_drawn(*browse(browser, framed), width, (*CHARTS, "life"))
         check(f"{count} nodes" in dom and "diamonds: depth event" in dom, f"{width} px: {count} nodes and their messages are not there")
     check_sweep(browser, scenario, folder)
+    check_seeds(browser, scenario, folder)
     print(f"{len(CHARTS)} charts at 1400 and 390 px")

@@ -40,6 +40,21 @@ def refused(program, file, text, expected):
     check(not (file.parent / "refused").exists(), "something was written")
 
 
+def check_scenario_again(folder, scenario):
+    """What a run leaves runs again, from wherever it stands: the same bytes on air."""
+    options = ("--set", "scene.level_step_m=0.3", "--set", "pairs.count=1", "--seed", "11")
+    first = emulate(scenario, folder / "set", *options)
+    again = emulate(folder / "set/scenario.toml", folder / "again")
+    plain = emulate(scenario, folder / "plain")
+    captures = [(folder / name / "capture.pcapng").read_bytes() for name in ("set", "again", "plain")]
+    check(captures[0] == captures[1] != captures[2], "scenario.toml of a run gives another run")
+    check((folder / "set/scenario.toml").read_bytes() == (folder / "again/scenario.toml").read_bytes(), "its own scenario.toml differs")
+    check(first["settings"] == {"scenario": "moving.toml", "seed": 11, "set": ["scene.level_step_m=0.3", "pairs.count=1"], "baseline": None}, f"{first['settings']}")
+    check(again["settings"]["set"] == [] and again["seed"] == 11 and plain["seed"] == 3, f"{again['settings']}")
+    emulate(folder / "again/scenario.toml", folder / "again")
+    check((folder / "again/capture.pcapng").read_bytes() == captures[0], "a run in the folder of its own scenario is another one")
+
+
 with tempfile.TemporaryDirectory() as folder:
     folder = pathlib.Path(folder)
     scenario = folder / "scenario.toml"
@@ -74,11 +89,12 @@ with tempfile.TemporaryDirectory() as folder:
     judged = played["pairs"][0]["maps"][0]["error"]
     check([pair["maps"][0]["error"] for pair in blind["pairs"]] == [judged, None], f"a truth without pixels: {blind['pairs']}")
     totals = blind["totals"]
-    check(totals["median_error_px"]["count"] == 1 and totals["correct_median"] == judged["correct"], f"{totals}")
+    check(totals["error_median_px"]["count"] == 1 and totals["correct_median"] == judged["correct"], f"{totals}")
     with (folder / "blind/maps.csv").open(newline="") as lines:
         cells = {row["node"]: [row[name] for name in row if name.startswith("error_")] for row in csv.DictReader(lines)}
     check(all(cells[str(blind["pairs"][0]["lead"])]) and not any(cells[str(blind["pairs"][1]["lead"])]), f"{cells}")
 
+    check_scenario_again(folder, moving)
     again = run(BUILD / "bin/tarsier", "render", scenario, "--out", folder / "frames1")
     check(again.returncode == 2 and "is there already" in again.stderr, again.stderr)
     for program in (("tarsier-emulator",), ("tarsier", "render")):

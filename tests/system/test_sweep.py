@@ -63,7 +63,7 @@ def expected(summary):
     nodes, totals = summary["nodes"], summary["totals"]
     errors = [one["error"] for pair in summary["pairs"] for one in pair["maps"] if one["error"] is not None]
     events = [event["latency_s"] for event in summary["events"]]
-    figures = {name: totals[name] for name in ("frames_watched", "frames_woken", "maps_made", "maps_withheld", "maps_lost", "maps_received", "air_bytes",
+    figures = {name: totals[name] for name in ("frames_watched", "frames_woken", "maps_made", "maps_withheld", "maps_lost", "maps_received", "air_bytes", "air_lost",
                                                "shortest_life_days", "median_life_days")}
     return figures | {
         "virtual_time_s": summary["virtual_time_s"], "nodes": len(nodes),

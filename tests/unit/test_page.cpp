@@ -91,6 +91,8 @@ TEST_F(Page, StaysSmallWhateverWasRun)
         map.error = MapError{19'200, 12'345, 0.1234, 0.1234, 0.1234, 1.2345, 1.2345, 1234.56, 12.345};
         record_.maps.push_back(map);
         record_.events.push_back({map.capture_time_us, "somebody comes by"});
+        record_.zone_events.push_back(
+            {map.node, i, map.capture_time_us, map.commit_time_us, "level", "measured", 98.76, 2.3456, 2.3457});
     }
     std::vector<CloudPoint> cloud(160'000);
     for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -111,6 +113,11 @@ TEST_F(Page, StaysSmallWhateverWasRun)
     EXPECT_EQ(data.at("nodes").at("of"), 4'000);
     EXPECT_EQ(data.at("maps").at("of"), 6'000);
     EXPECT_GT(data.at("maps").at("rows").size(), 2'000u);
+    EXPECT_EQ(data.at("zone_events").at("of"), 6'000);
+    EXPECT_EQ(data.at("zone_events").at("rows").size(), 3'000u);
+    ASSERT_EQ(data.at("zone_events").at("newest").size(), 300u);
+    EXPECT_EQ(data.at("zone_events").at("newest").back(),
+              nlohmann::json::array({5999.123456, test::kLead, "level", "measured", 2.3456, 98.76, 0.765432, 2.3457}));
     EXPECT_EQ(data.at("cloud").at("of"), cloud.size());
     EXPECT_GT(data.at("cloud").at("count"), 50'000u);
     EXPECT_EQ(data.at("gallery").size(), 3u) << "not all pictures fit";

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <sstream>
 
+#include <numeric>
+
 #include <gtest/gtest.h>
 
 #include "memory_run.h"
@@ -76,6 +78,11 @@ std::vector<std::vector<std::string>> cells_of(const std::string &csv)
     return lines;
 }
 
+std::uint64_t sum_of(const air::LossTally &tally)
+{
+    return std::accumulate(tally.begin(), tally.end(), std::uint64_t{0});
+}
+
 TEST(RunRecord, LinksSumUpToTheAirAndTheMacs)
 {
     MemoryRun run(lossy_site());
@@ -91,20 +98,26 @@ TEST(RunRecord, LinksSumUpToTheAirAndTheMacs)
         frames[link.to] += link.tally.acknowledgements.frames;
         bytes[link.to] += link.tally.acknowledgements.bytes;
         acknowledged[link.from] += link.tally.acknowledged;
-        EXPECT_LE(link.tally.received, data.frames);
+        EXPECT_EQ(link.tally.received + sum_of(link.tally.lost), data.frames) << "each lost frame has one cause";
         EXPECT_LE(link.tally.acknowledged, link.tally.acknowledgements.frames);
         EXPECT_GE(link.snr_db, 20) << "a few metres apart";
         EXPECT_EQ(link.tally.kinds.at(message_index(0)).frames, 0u) << "a frame that nobody can name";
     }
     std::uint64_t lost = 0;
+    std::uint64_t faults = 0;
     for (const NodeRecord &node : record.nodes) {
         const std::uint16_t id = node.site->id;
         EXPECT_EQ(frames[id], node.air.frames) << id;
         EXPECT_EQ(bytes[id], node.air.bytes) << id;
         EXPECT_EQ(acknowledged[id], node.mac.sent) << id;
+        EXPECT_EQ(sum_of(node.air.lost_by), node.air.lost) << id;
         lost += node.air.lost;
+        faults += node.air.lost_by.at(static_cast<std::size_t>(air::LossCause::link_fault));
     }
     EXPECT_GT(lost, 0u);
+    EXPECT_GT(faults, 0u) << "frame_loss is a fault of the link";
+    EXPECT_EQ(make_summary(record).at("totals").at("air_lost"), lost);
+    EXPECT_EQ(make_summary(record).at("totals").at("air_lost_by").at("link_fault"), faults);
 }
 
 TEST(RunRecord, KindsAreThoseThatTravel)
@@ -264,7 +277,7 @@ TEST(RunRecord, MapsWithNothingToCompareHaveNoError)
     EXPECT_TRUE(json_of(none.maps[0]).at("error").is_null());
     const auto totals = make_summary(none).at("totals");
     EXPECT_TRUE(totals.at("correct_median").is_null()) << totals.dump();
-    EXPECT_EQ(totals.at("median_error_px").at("count"), 0);
+    EXPECT_EQ(totals.at("error_median_px").at("count"), 0);
 }
 
 TEST(RunRecord, NamesAreQuotedInTables)

@@ -10,7 +10,9 @@
 
 #include "test_host_folder.h"
 #include "tsr/host/input_error.h"
+#include "tsr/scenario/effective.h"
 #include "tsr/scenario/staging.h"
+#include "tsr/scenario/zone_truth.h"
 
 namespace
 {
@@ -42,6 +44,61 @@ class ScenarioFile : public testing::Test
 };
 
 constexpr const char *kTank = "name = \"t\"\nduration_s = 20\n[scene]\nkind = \"tank\"\n";
+
+TEST_F(ScenarioFile, IsWrittenWithItsSettings)
+{
+    const std::vector<std::string> settings = {"scene.level_step_m=0.3", "seed=9", "pairs.heights_m=[1.1, 2]"};
+    const std::string text = tsr::EffectiveScenario(write(kTank), settings).text_for(folder_.path());
+    for (const char *line : {"seed = 9\n", "level_step_m = 0.3\n", "duration_s = 20\n", "heights_m = [ 1.1, 2 ]\n"}) {
+        EXPECT_NE(text.find(line), std::string::npos) << line << " in " << text;
+    }
+    const Scenario again = tsr::load_scenario(write(text), {});
+    EXPECT_EQ(again.scene.level_step_m, 0.3);
+    EXPECT_EQ(again.seed, 9u);
+    EXPECT_EQ(tsr::EffectiveScenario(write(text), {}).text_for(folder_.path()), text);
+}
+
+TEST_F(ScenarioFile, FindsItsRecordingFromAnotherFolder)
+{
+    const std::string crowd = "name = 'c'\n[pairs]\ncount = 2\n[recorded]\npause_s = 0.1\nsite = ";
+    const auto out = folder_.path() / "out/run";
+    std::filesystem::create_directories(out);
+    const auto text = [&](const std::string &site) {
+        return tsr::EffectiveScenario(write(crowd + site), {}).text_for(out);
+    };
+    EXPECT_NE(text("'frames/site.toml'").find("site = '../../frames/site.toml'"), std::string::npos);
+    EXPECT_NE(text("'../site.toml'").find("site = '../../../site.toml'"), std::string::npos);
+    EXPECT_NE(text("'/frames/site.toml'").find("site = '/frames/site.toml'"), std::string::npos);
+    EXPECT_NE(text("'0.29999999999999999'").find("0.29999999999999999'"), std::string::npos) << "a name, no number";
+}
+
+TEST(Settings, AreToldWithoutFolders)
+{
+    EXPECT_EQ(tsr::without_folders("recorded.site='/a/b/site.toml'"), "recorded.site='site.toml'");
+    EXPECT_EQ(tsr::without_folders("recorded.site='b/site.toml'"), "recorded.site='b/site.toml'");
+    EXPECT_EQ(tsr::without_folders("pairs.count = 3"), "pairs.count = 3");
+}
+
+/* f B = 4 px m; the depth at 2 px is 2 m, at 4 px 1 m. */
+TEST(ZoneTruth, IsOfThePixelsThatCount)
+{
+    tsr::SitePair pair;
+    pair.focal_px = 40;
+    pair.baseline_mm = 100;
+    pair.width = 4;
+    pair.height = 2;
+    const tsr::FloatImage truth{4, 2, {2, 2, 4, 9, 2.5F, tsr::kFloatInvalid, 4, 9}};
+    tsr::SiteZone zone{"z", "", {0, 0, 3, 2}, tsr::ZoneKind::below, 1.5};
+    EXPECT_NEAR(tsr::zone_truth(pair, zone, truth).share, 2 / 6.0, 1e-9);
+    EXPECT_NEAR(tsr::zone_truth(pair, zone, truth).depth_m.value(), 1, 1e-9);
+    zone.kind = tsr::ZoneKind::changed; /* the lower median is 2 px: those of 1 .. 3 px */
+    EXPECT_NEAR(tsr::zone_truth(pair, zone, truth).share, 3 / 6.0, 1e-9);
+    EXPECT_NEAR(tsr::zone_truth(pair, zone, truth).depth_m.value(), 4 / (6.5 / 3), 1e-6);
+    zone.kind = tsr::ZoneKind::below;
+    zone.depth_m = 0.1;
+    EXPECT_EQ(tsr::zone_truth(pair, zone, truth).share, 0);
+    EXPECT_FALSE(tsr::zone_truth(pair, zone, truth).depth_m);
+}
 
 TEST_F(ScenarioFile, HasDefaultsAndTakesSettings)
 {

@@ -53,6 +53,7 @@ struct ReceivedEvent {
     std::string kind;
     double area_percent = 0;
     std::optional<double> depth_m;
+    std::optional<double> true_depth_m; /* of a surface that was measured: at the same instant, by ground truth */
 };
 
 struct NodeRecord {
@@ -124,6 +125,12 @@ struct RunDigest { /* what one looks at first */
     std::map<std::pair<std::size_t, int>, FrameTally> traffic;
 };
 
+/* What the command was told that changes results. */
+struct RunSettings {
+    std::string scenario;         /* its file's name, without folders; empty: a site was run */
+    std::vector<std::string> set; /* of --set, but for the seed */
+};
+
 struct RunRecord {
     const Site *site = nullptr;             /* kept */
     const Simulation *simulation = nullptr; /* kept */
@@ -134,6 +141,7 @@ struct RunRecord {
     std::vector<Episode> episodes;          /* by their end; those under way last */
     std::vector<SceneEvent> events;         /* what the scene says of itself */
     RunDigest digest;
+    RunSettings settings;
     unsigned sink_restarts = 0;
     double wall_time_s = 0;
 
@@ -143,11 +151,16 @@ struct RunRecord {
 /* Reads the events in out's sink.json. Throws InputError. */
 std::vector<ReceivedEvent> read_received_events(const Simulation &simulation, const std::filesystem::path &out);
 
+/* true_depth_m of kTrueDepthsMax events at most, evenly over them: each takes a picture of the truth. Throws
+ * InputError. */
+inline constexpr std::size_t kTrueDepthsMax = 2000;
+void find_true_depths(const Site &site, Pictures &pictures, std::vector<ReceivedEvent> &events);
+
 /* Reads sink.json in out and compares each map with ground truth, where there is some. Throws InputError. */
 std::vector<ReceivedMap> read_received_maps(const Site &site, const Simulation &simulation, Pictures &pictures,
                                             const std::filesystem::path &out);
 
-/* Everything but sink_restarts and wall_time_s; finds when maps and events were committed. */
+/* Everything but settings, sink_restarts and wall_time_s; finds when maps and events were committed. */
 RunRecord gather(const Site &site, const Simulation &simulation, const Pictures &pictures,
                  std::vector<ReceivedMap> maps, std::vector<ReceivedEvent> zone_events);
 

@@ -29,6 +29,7 @@ struct AirTally {
     std::uint64_t frames = 0; /* acknowledgements included */
     std::uint64_t bytes = 0;  /* PSDU octets */
     std::uint64_t lost = 0;   /* not received by the addressed node */
+    air::LossTally lost_by{}; /* of these, why; broadcasts have no cause */
 };
 
 class Simulation

@@ -58,6 +58,7 @@ struct LinkTally {
     std::uint64_t received_bytes = 0;                     /* PSDU octets of them */
     std::uint64_t acknowledged = 0;                       /* of these, the sender heard the acknowledgement */
     FrameTally acknowledgements;                          /* sent for them, the other way */
+    air::LossTally lost{};                                /* data frames that were not received */
 
     FrameTally data() const; /* sum over kinds */
 };

@@ -27,6 +27,7 @@ extern "C" {
 #include "tsr/hal/radio.h"
 }
 #include "tsr/hal/air/link_losses.h"
+#include "tsr/hal/air/loss.h"
 #include "tsr/hal/air/model.h"
 #include "tsr/hal/air/neighbours.h"
 #include "tsr/hal/air/propagation.h"
@@ -55,7 +56,8 @@ struct AirFrame {
     const std::uint8_t *psdu = nullptr;
     std::size_t psdu_len = 0;
     std::uint64_t lost_at = 0; /* 1: nobody addressed got it; broadcasts: the sender's neighbours that did not */
-    std::size_t acknowledged = kNobody; /* radio index: whose frame this acknowledges */
+    std::size_t acknowledged = kNobody;          /* radio index: whose frame this acknowledges */
+    air::LossCause cause = air::LossCause::none; /* why it is lost, if it was for one radio */
 };
 
 /* What becomes of one transmission, when a test decides it. */
@@ -136,7 +138,11 @@ class Air
     void end_ack(const Transmission &transmission, AirFrame frame, AirFate fate, const std::vector<Receipt> &heard);
     std::uint64_t broadcast_losses(const Transmission &transmission, std::uint64_t got) const;
     void answer(Radio &sender, Radio *receiver, const Transmission &transmission);
+    std::uint64_t draw_of(const Transmission &transmission, std::size_t receiver) const;
     bool chance_keeps(const Transmission &transmission, std::size_t receiver, std::uint64_t success_q32) const;
+    static air::LossCause cause_of_miss(const Radio &radio, air::Reception reception);
+    air::LossCause cause_of_loss(const Transmission &transmission, AirFate fate) const;
+    air::LossCause cause_on_link(const Transmission &transmission, std::size_t place) const;
     void deliver(const Receipt &receipt, const Transmission &transmission);
     void finish(Radio &radio, tsr_radio_outcome outcome, std::uint64_t frame_end_us);
     void account(Radio &radio) const;

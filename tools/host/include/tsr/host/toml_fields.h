@@ -90,6 +90,8 @@ class TomlFile
     /* Then each setting, "table.field = value" as TOML has it, in the place of what the file says. */
     TomlFile(const std::filesystem::path &file, const std::vector<std::string> &settings);
     TomlFields top() const { return {table_, file_, ""}; }
+    /* Everything, settings included. */
+    const toml::table &table() const { return table_; }
 
   private:
     std::string file_;

@@ -50,9 +50,20 @@ struct Signal {
     std::uint8_t channel = 0;
 };
 
+/* What a receiver does about a transmission that begins. */
+enum class Reception : std::uint8_t {
+    followed,
+    other_channel,
+    deaf,
+    weak,  /* noise alone hides its preamble */
+    busy,  /* an earlier frame is followed */
+    hidden /* others on air hide its preamble */
+};
+
 /* How a transmission ended for one receiver. */
 struct Outcome {
-    /* Probability that its frame is right: 0 if another, none, or one nobody wants was followed. */
+    bool followed = false; /* until its end, and wanted */
+    /* Probability that its frame is right; 0 if it was not followed. */
     std::uint64_t success_q32 = 0;
     int level_q4 = 0; /* dBm */
 };
@@ -72,14 +83,16 @@ class Receiver
     void tune(std::uint8_t channel, std::span<const int> levels_q4, std::uint64_t now_us);
     /* A deaf receiver loses the frame it follows. */
     void listen(bool on, std::uint64_t now_us);
-    /* A transmission begins; now is its start. True: the receiver follows it from now on. */
-    bool begin(const Signal &signal);
+    /* A transmission begins; now is its start. */
+    Reception begin(const Signal &signal);
     /* Nobody asks how probable the frame is that it follows. The receiver is busy with it all the same. */
     void disregard() { wanted_ = false; }
     /* A transmission of this level and channel is heard no more: its end, or its sender's. */
     void fade(int level_q4, std::uint8_t channel, std::uint64_t now_us);
     /* It ends, having faded. */
     Outcome end(std::uint64_t number);
+    /* A stronger frame took the receiver over from this one, and it was the last that lost it so. */
+    bool overtaken(std::uint64_t number) const { return overtaken_ == number; }
 
     /* Between these the channel was clear if neither energy nor a frame was found (CCA mode 3 with OR,
      * IEEE 802.15.4-2006, 6.9.9: energy alone, its mode 1, decides where no preamble was heard). */
@@ -88,7 +101,7 @@ class Receiver
 
   private:
     void add(int level_q4);
-    bool takes(const Signal &signal) const;
+    Reception reception_of(const Signal &signal) const;
     void settle(std::uint64_t now_us);
     void sense(std::uint64_t now_us);
 
@@ -102,6 +115,7 @@ class Receiver
     bool sensing_ = false;
     bool found_ = false; /* by the CCA under way */
     Signal followed_;
+    std::uint64_t overtaken_ = UINT64_MAX;
     std::uint64_t settled_us_ = 0; /* success_q32_ holds for the frame until then */
     std::uint64_t success_q32_ = 0;
 };
