@@ -13,7 +13,8 @@ namespace
 {
 
 constexpr std::size_t kPairsPrinted = 20; /* one by one; more are summed up */
-constexpr double kLateToldS = 0.2;        /* less is how exactly a machine sleeps and draws a frame */
+constexpr std::size_t kZonesPrinted = 4;
+constexpr double kLateToldS = 0.2; /* less is how exactly a machine sleeps and draws a frame */
 
 void print_counts(const char *name, const nlohmann::ordered_json &counts)
 {
@@ -50,6 +51,22 @@ void print_errors(const nlohmann::ordered_json &maps)
     }
 }
 
+/* They would never tell of anything, and nothing else shows it. */
+void print_stuck_zones(const nlohmann::ordered_json &zones)
+{
+    std::size_t stuck = 0;
+    for (const auto &zone : zones) {
+        if (zone.at("always_begun").get<bool>() && ++stuck <= kZonesPrinted) {
+            std::printf("zone '%s' of '%s' began at the first look and never ended: what always stands there is beyond "
+                        "its limit\n",
+                        zone.at("zone").get<std::string>().c_str(), zone.at("pair").get<std::string>().c_str());
+        }
+    }
+    if (stuck > kZonesPrinted) {
+        std::printf("and %zu zones more like these\n", stuck - kZonesPrinted);
+    }
+}
+
 } // namespace
 
 void print_result(const std::filesystem::path &out, const RunOutcome &outcome)
@@ -64,6 +81,7 @@ void print_result(const std::filesystem::path &out, const RunOutcome &outcome)
             print_errors(pair.at("maps"));
         }
     }
+    print_stuck_zones(summary.at("zones"));
     if (const auto &baseline = summary.at("baseline"); !baseline.is_null()) {
         std::printf(
             "a baseline: in the place of maps both views, as JPEG of quality %d; %d captures failed, by their camera "

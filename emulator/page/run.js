@@ -23,6 +23,8 @@ function showHead() {
   const restarts = summary.faults.filter((fault) => fault.kind === "sink restart").length;
   if (summary.sink_restarts > restarts) notices.push(`The sink was started again ${count(summary.sink_restarts, "time")}.`);
   if (summary.faults.length > 0) notices.push(faultsInWords());
+  const stuck = summary.zones.filter((zone) => zone.always_begun);
+  if (stuck.length > 0) notices.push(zonesInWords(stuck));
   $("notice").textContent = notices.join(" ");
   $("notice").hidden = notices.length === 0;
 }

@@ -3,7 +3,7 @@
  *
  * The page (emulator/page/) holds one mark for its data, which becomes a JSON object:
  *
- *   summary   summary.json without nodes, pairs, links and events of zones
+ *   summary   summary.json without nodes, pairs, links and events of zones, and with zones that are always_begun alone
  *   played_s  how long there was something to see
  *   nodes, links, maps   {of, columns, rows}: the tables of table.h; of: rows before they were thinned
  *   timeline  {bin_s, looks, woken, committed, withheld, lost, failed}: numbers of each bin
@@ -245,6 +245,10 @@ Json summary_head(Json summary)
     for (const char *key : {"nodes", "pairs", "links", "events"}) {
         summary.erase(key);
     }
+    Json &zones = summary.at("zones");
+    zones.erase(std::remove_if(zones.begin(), zones.end(),
+                               [](const Json &zone) { return !zone.at("always_begun").get<bool>(); }),
+                zones.end());
     Json &faults = summary.at("faults");
     faults = thinned(faults, kEventsMax, [](const Json &fault) { return fault; });
     return summary;

@@ -236,6 +236,14 @@ Json json_of(const ReceivedEvent &event)
             {"true_depth_m", event.true_depth_m ? Json(rounded(*event.true_depth_m, 4)) : Json()}};
 }
 
+Json json_of(const ZoneRecord &record)
+{
+    const auto &[pair, zone, events, always_begun] = record;
+    return {{"pair", pair->name}, {"node", pair->lead},
+            {"zone", zone->name}, {zone_field(zone->kind), zone->depth_m},
+            {"events", events},   {"always_begun", always_begun}};
+}
+
 Json json_of(const FaultNote &note)
 {
     const SiteFault &fault = note.fault;

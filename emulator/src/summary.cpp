@@ -176,6 +176,7 @@ Json make_summary(const RunRecord &run)
             {"usable_battery_j", rounded(battery_life(site.battery, 0).usable_mj / 1000, 1)},
             {"faults", array_of(run.simulation->faults().notes())},
             {"totals", totals_json(run, nodes)},
+            {"zones", array_of(zone_records(run))},
             {"events", array_of(run.zone_events)},
             {"pairs", pairs_json(run, nodes)},
             {"links", array_of(run.links)},

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tsr/emulator/run_record.h"
+#include "tsr/emulator/zone_record.h"
 
 namespace tsr
 {
@@ -22,6 +23,7 @@ nlohmann::ordered_json json_of(const LinkRecord &link);
 /* error is there only if the map was compared. */
 nlohmann::ordered_json json_of(const ReceivedMap &map);
 nlohmann::ordered_json json_of(const ReceivedEvent &event);
+nlohmann::ordered_json json_of(const ZoneRecord &record);
 nlohmann::ordered_json json_of(const FaultNote &note);
 
 } // namespace tsr
