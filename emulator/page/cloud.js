@@ -4,6 +4,14 @@ const SAMPLE_POINTS = 20000, CANDIDATE_POINTS = 3000;
 const SWAY = 0.2; /* to both sides of the first view */
 const CANDIDATE_YAWS = 16, CANDIDATE_PITCHES = [0.25, 0.45, 0.7, 0.95];
 
+const bytesOf = (content) => Uint8Array.from(atob(content), (c) => c.charCodeAt(0));
+
+/* x, y, z of each point, m. */
+function cloudPositions() {
+  const {low, step} = DATA.cloud, grid = new Uint16Array(bytesOf(DATA.cloud.positions).buffer);
+  return Float32Array.from(grid, (value, i) => low[i % 3] + step[i % 3] * value);
+}
+
 /* The middle and the spread of each axis, without the part trim at each end. points: [[x, y, z], ...]. */
 function boxOf(points, trim) {
   return [0, 1, 2].map((axis) => {
@@ -64,9 +72,7 @@ function firstView(points, aspect) {
  * from: first point shown; splatAtOne: side of a point, px, seen from the distance of that size.
  */
 function showCloud(canvas, {first, from = 0, splatAtOne, still = false}) {
-  const bytesOf = (content) => Uint8Array.from(atob(content), (c) => c.charCodeAt(0));
-  const {count: all, low, step} = DATA.cloud, grid = new Uint16Array(bytesOf(DATA.cloud.positions).buffer), colours = bytesOf(DATA.cloud.colours);
-  const positions = Float32Array.from(grid, (value, i) => low[i % 3] + step[i % 3] * value);
+  const all = DATA.cloud.count, positions = cloudPositions(), colours = bytesOf(DATA.cloud.colours);
   const context = canvas.getContext("2d"), width = canvas.width, height = canvas.height;
   if (all === 0) { context.fillStyle = "#999"; context.font = "24px sans-serif"; context.fillText("no points", 30, 50); return; }
   const every = Math.max(1, Math.floor((all - from) / SAMPLE_POINTS)), sample = [];

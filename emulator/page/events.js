@@ -29,7 +29,7 @@ function zoneChart(id, name, reports) {
 
 /* Those whose limit lies behind what always stands there. */
 function zonesInWords(stuck) {
-  const named = stuck.slice(0, 3).map((zone) => `${zone.zone} of ${zone.pair}`).join(", ") + (stuck.length > 3 ? ` and ${number(stuck.length - 3)} more` : "");
+  const named = stuck.slice(0, 3).map((zone) => `“${zone.zone}” of ${zone.pair}`).join(", ") + (stuck.length > 3 ? ` and ${number(stuck.length - 3)} more` : "");
   return `Begun at the first look and never ended: ${stuck.length === 1 ? "zone" : "zones"} ${named}. What always stands there is beyond the limit.`;
 }
 

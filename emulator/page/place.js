@@ -1,5 +1,6 @@
 /* The plan: nodes where they stand, what their cameras see, the tree coloured by the quality of its links. */
 const QUALITY = [[0.99, "link-5", "99 % and more"], [0.95, "link-4", "95 to 99 %"], [0.8, "link-3", "80 to 95 %"], [0.5, "link-2", "50 to 80 %"], [-1, "link-1", "less than half"]];
+const PLAN_CELL_PX = 2, PLAN_LEVELS = 24;
 const qualityOf = (success) => QUALITY.find(([least]) => success >= least);
 
 /* A node and its parent: both directions of their link together. */
@@ -45,12 +46,40 @@ function placeLabels(points, size, width) {
   });
 }
 
+/*
+ * The cloud from above, as a picture of width x height: the more heights there are points at, the darker, so walls and
+ * furniture stand out from floors. place: [x, y, z] of the place to px.
+ */
+function cloudFromAbove(positions, place, width, height) {
+  const [columns, rows] = [Math.ceil(width / PLAN_CELL_PX), Math.ceil(height / PLAN_CELL_PX)], inside = [];
+  for (let i = 0; i < positions.length; i += 3) {
+    const [x, y] = place(positions[i], positions[i + 1]).map((px) => Math.floor(px / PLAN_CELL_PX));
+    if (x >= 0 && x < columns && y >= 0 && y < rows) inside.push([y * columns + x, positions[i + 2]]);
+  }
+  if (inside.length === 0) return "";
+  const heights = Float32Array.from(inside, ([, z]) => z).sort();
+  const [low, high] = [0.02, 0.98].map((part) => heights[Math.floor(part * (heights.length - 1))]);
+  const levels = new Uint32Array(columns * rows), filled = new Uint8Array(columns * rows);
+  for (const [cell, z] of inside) {
+    const level = Math.floor(PLAN_LEVELS * (z - low) / (high - low || 1));
+    if (level >= 0 && level < PLAN_LEVELS && !(levels[cell] >> level & 1)) { levels[cell] |= 1 << level; filled[cell]++; }
+  }
+  const most = filled.filter((n) => n > 0).sort(), dark = most[Math.floor(0.98 * (most.length - 1))] ?? 1;
+  const canvas = document.createElement("canvas"), context = canvas.getContext("2d");
+  [canvas.width, canvas.height] = [columns, rows];
+  const image = context.createImageData(columns, rows), ink = matchMedia("(prefers-color-scheme: dark)").matches ? 255 : 0;
+  filled.forEach((n, cell) => image.data.set([ink, ink, ink, n === 0 ? 0 : Math.min(150, 10 + 140 * n / dark)], 4 * cell));
+  context.putImageData(image, 0, 0);
+  return `<image href="${canvas.toDataURL()}" x="0" y="0" width="${columns * PLAN_CELL_PX}" height="${rows * PLAN_CELL_PX}"><title>what the maps show, from above</title></image>`;
+}
+
 function showPlan() {
   /* A place that is longer than wide is turned by a right angle: y to the right, x down. */
   const spread = (key) => Math.max(...nodes.map((node) => node[key])) - Math.min(...nodes.map((node) => node[key]));
   const turned = spread("place_y_m") > 1.3 * spread("place_x_m");
   const across = (node) => turned ? node.place_y_m : node.place_x_m, up = (node) => turned ? -node.place_x_m : node.place_y_m;
   const tree = treeLinks(), xs = nodes.map(across), ys = nodes.map(up);
+  const positions = cloudPositions(), placeOf = (x, y) => ({place_x_m: x, place_y_m: y});
   const low = [Math.min(...xs), Math.min(...ys)], high = [Math.max(...xs), Math.max(...ys)];
   const few = nodes.length <= 30, some = nodes.length <= 200, most = Math.max(1, ...tree.map((link) => link.bytes));
   function draw(width) {
@@ -65,6 +94,7 @@ function showPlan() {
     const p = plot(width, height, {x: [middle[0] - half[0], middle[0] + half[0]], y: [middle[1] - half[1], middle[1] + half[1]]});
     const at = (node) => [p.x(across(node)), p.y(up(node))];
     const parts = turned ? [p.axisY("x, m", undefined, (value) => tickText(value === 0 ? 0 : -value)), p.axisX("y, m")] : [p.axisY("y, m"), p.axisX("x, m")];
+    if (positions.length > 0) parts.unshift(cloudFromAbove(positions, (x, y) => at(placeOf(x, y)), width, height - 40));
     for (const node of nodes.filter((one) => isCamera(one) && one.view_azimuth_deg !== null)) {
       const [x, y] = at(node), turn = Math.PI / 180, length = reach * Math.max(0.35, Math.cos(node.view_elevation_deg * turn));
       const [a, b] = [-1, 1].map((side) => (node.view_azimuth_deg - (turned ? 90 : 0) + side * node.view_fov_deg / 2) * turn);
@@ -92,7 +122,7 @@ function showPlan() {
     label: `Plan of ${nodes.length} nodes and the tree that joins them`,
     draw,
     below: legend([...QUALITY.filter(([, colour]) => seen.has(colour)).map(([, colour, words]) => [colour, `link: ${words} of the frames received`]),
-      ["cone", "what a camera sees (not to scale)"], ["ink", "gateway"], ["camera", "camera"], ...faultLegend()]) + `<p class="soft note">A link is as wide as its bytes. ${thinnedNote(DATA.nodes, "nodes")}</p>`,
+      ["cone", "what a camera sees (not to scale)"], ["ink", "gateway"], ["camera", "camera"], ...faultLegend()]) + `<p class="soft note">A link is as wide as its bytes.${positions.length > 0 ? " In gray what the maps show, the darker the more of its height." : ""} ${thinnedNote(DATA.nodes, "nodes")}</p>`,
     table: () => [["from", "to", "hops", "frames", "received", "success", "acknowledged", "bytes", "dBm", "SNR, dB"],
       links.map((link) => [nameOf(link.from), nameOf(link.to), link.hops, link.frames, link.received, link.success, link.acknowledged, link.bytes, link.rssi_dbm, link.snr_db])],
     tableTitle: `${count(links.length, "link")} that were used, each direction, as a table`,
