@@ -2,8 +2,7 @@
  * Any bytes as a coded gray image: decode, and what decodes must survive being
  * coded again, within near.
  *
- *   clang -g -O1 -fsanitize=fuzzer,address,undefined -I... fuzz_codec_gray.c firmware/codec/(all).c
- * firmware/base/(all).c
+ *   tools/fuzz codec_gray
  *
  * SPDX-License-Identifier: Apache-2.0
  */

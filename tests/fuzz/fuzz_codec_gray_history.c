@@ -1,8 +1,7 @@
 /*
  * Any bytes as a gray image against the one that they name: decode, with what is held equal to what was decoded.
  *
- *   clang -g -O1 -fsanitize=fuzzer,address,undefined -I... fuzz_codec_gray_history.c firmware/codec/(all).c
- * firmware/base/(all).c
+ *   tools/fuzz codec_gray_history
  *
  * SPDX-License-Identifier: Apache-2.0
  */

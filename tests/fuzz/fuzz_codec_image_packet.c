@@ -2,8 +2,7 @@
  * Any bytes as a packet of a gray image, a view or a picture: nothing but its own pixels change, and what is said to
  * have come has.
  *
- *   clang -g -O1 -fsanitize=fuzzer,address,undefined -I... fuzz_codec_image_packet.c firmware/codec/(all).c
- * firmware/base/(all).c
+ *   tools/fuzz codec_image_packet
  *
  * The first five bytes choose the codec, width, height, its option (near; cap, coarse; step) and the id.
  *

@@ -2,8 +2,7 @@
  * Any bytes as a coded disparity map: decode, check every value, and what
  * decodes must survive being coded again.
  *
- *   clang -g -O1 -fsanitize=fuzzer,address,undefined -I... fuzz_codec_map.c firmware/codec/(all).c
- * firmware/base/(all).c
+ *   tools/fuzz codec_map
  *
  * SPDX-License-Identifier: Apache-2.0
  */

@@ -1,8 +1,7 @@
 /*
  * Any bytes as a packet of a map: nothing but its own pixels change, and every value is one of the map's.
  *
- *   clang -g -O1 -fsanitize=fuzzer,address,undefined -I... fuzz_codec_packet.c firmware/codec/(all).c
- * firmware/base/(all).c
+ *   tools/fuzz codec_packet
  *
  * The first five bytes choose the map: width, height, disparities, step and map id.
  *

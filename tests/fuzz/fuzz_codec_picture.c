@@ -2,8 +2,7 @@
  * Any bytes as a coded picture: decode, and what decodes must survive being coded
  * again, with and without a target.
  *
- *   clang -g -O1 -fsanitize=fuzzer,address,undefined -I... fuzz_codec_picture.c firmware/codec/(all).c
- * firmware/base/(all).c
+ *   tools/fuzz codec_picture
  *
  * SPDX-License-Identifier: Apache-2.0
  */

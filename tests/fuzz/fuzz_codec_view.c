@@ -4,8 +4,7 @@
  *
  *   bytes 0..1   length of the first view, 16 bits, little-endian; the second is the rest
  *
- *   clang -g -O1 -fsanitize=fuzzer,address,undefined -I... fuzz_codec_view.c firmware/codec/(all).c
- * firmware/base/(all).c
+ *   tools/fuzz codec_view
  *
  * SPDX-License-Identifier: Apache-2.0
  */

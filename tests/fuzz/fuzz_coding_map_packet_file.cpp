@@ -1,10 +1,7 @@
 /*
  * Any bytes as a file of packets: refused, or a map whose every pixel is a value of it or invalid.
  *
- *   clang -g -O1 -fsanitize=fuzzer-no-link,address,undefined -c -I... firmware/codec/(all).c firmware/base/(all).c
- *   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -Ifirmware/base/include -Ifirmware/codec/include
- *     -Itools/host/include -Itools/tarsier/include tests/fuzz/fuzz_coding_map_packet_file.cpp
- *     tools/tarsier/src/map_packet_file.cpp tools/host/src/input_error.cpp *.o
+ *   tools/fuzz coding_map_packet_file
  *
  * Checksums are made right first, or no input would get past them: that of the header, and those of records that follow
  * each other as their lengths say. Of a record whose length has bit 15 set the bit is cleared and nothing is made

@@ -1,10 +1,7 @@
 /*
  * Any bytes as an image or float image: read or refused, never a crash.
  *
- *   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -Itools/host/include -Itools/host/src
- *     -Ifirmware/base/include tests/fuzz/fuzz_host_image.cpp
- *     tools/host/src/{image_file,png_codec,jpeg_codec,netpbm_header,pfm,input_error,read_file,atomic_file}.cpp
- *     -lpng -ljpeg
+ *   tools/fuzz host_image
  *
  * SPDX-License-Identifier: Apache-2.0
  */

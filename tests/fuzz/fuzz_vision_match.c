@@ -4,8 +4,7 @@
  * buffers to the portable kernel's map, however its rows are divided, with
  * every kernel, and with the map apart from the frames or over them.
  *
- *   clang -g -O1 -fsanitize=fuzzer,address,undefined -I... fuzz_vision_match.c firmware/vision/match*.c
- * firmware/base/(all).c
+ *   tools/fuzz vision_match
  *
  * SPDX-License-Identifier: Apache-2.0
  */

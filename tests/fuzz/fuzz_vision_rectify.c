@@ -5,8 +5,7 @@
  * The CRC would refuse nearly every mutation, so it is made anew first, and the
  * rows above are set to what the grid says when they are the one thing wrong.
  *
- *   clang -g -O1 -fsanitize=fuzzer,address,undefined -I... fuzz_vision_rectify.c firmware/vision/rectify*.c
- * firmware/base/(all).c
+ *   tools/fuzz vision_rectify
  *
  * SPDX-License-Identifier: Apache-2.0
  */

@@ -1,8 +1,7 @@
 /*
  * Any bytes as the body of each kind of message, and as a message's header.
  *
- *   clang -g -O1 -fsanitize=fuzzer,address,undefined -I... fuzz_wire_body.c firmware/wire/(all).c
- * firmware/base/(all).c
+ *   tools/fuzz wire_body
  *
  * SPDX-License-Identifier: Apache-2.0
  */

@@ -2,8 +2,7 @@
  * A row of fragments, each after its length in one byte: read, written back,
  * reassembled, answered.
  *
- *   clang -g -O1 -fsanitize=fuzzer,address,undefined -I... fuzz_wire_fragment.c firmware/wire/(all).c
- * firmware/base/(all).c
+ *   tools/fuzz wire_fragment
  *
  * SPDX-License-Identifier: Apache-2.0
  */

@@ -2,8 +2,7 @@
  * Any bytes as a received PSDU: parse, open, acknowledgement. And the same
  * bytes as a payload: what is sealed opens to itself.
  *
- *   clang -g -O1 -fsanitize=fuzzer,address,undefined -I... fuzz_wire_frame.c firmware/wire/(all).c
- * firmware/base/(all).c -lmbedcrypto
+ *   tools/fuzz wire_frame
  *
  * SPDX-License-Identifier: Apache-2.0
  */

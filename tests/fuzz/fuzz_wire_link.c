@@ -2,8 +2,7 @@
  * Any bytes as the stream of a gateway link. Each frame it yields encodes and
  * decodes to itself; after any bytes a good frame comes through.
  *
- *   clang -g -O1 -fsanitize=fuzzer,address,undefined -I... fuzz_wire_link.c firmware/wire/(all).c
- * firmware/base/(all).c
+ *   tools/fuzz wire_link
  *
  * SPDX-License-Identifier: Apache-2.0
  */
