@@ -135,7 +135,7 @@ RunOutcome run_site(const Options &options, const fs::path &folder, const std::s
     }
     write_tables(run.path(), record);
     write_page(run.path(), outcome.summary, record, gallery);
-    write_file_atomically(run.file("summary.json"), outcome.summary.dump(2) + "\n");
+    write_file_atomically(run.file("summary.json"), summary_text(outcome.summary));
     run.complete();
     return outcome;
 }

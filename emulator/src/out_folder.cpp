@@ -28,6 +28,8 @@ namespace
 
 constexpr const char *kMark = "tarsier-run";
 constexpr const char *kUnfinished = "unfinished";
+constexpr const char *kReplaced = "replaced"; /* results of before, while others take their place */
+constexpr const char *kPlacing = "placing";   /* those others, once nothing of before is in their way */
 constexpr std::array kNames = {"site.toml",  "keys.toml", "sink.db",      "sink.db-wal",    "sink.db-shm",
                                "sink.log",   "sink.json", "summary.json", "capture.pcapng", "index.html",
                                "cloud.ply",  "maps",      "nodes.csv",    "links.csv",      "maps.csv",
@@ -43,13 +45,20 @@ OutFolder::OutFolder(std::filesystem::path folder) : folder_(std::move(folder))
         throw InputError(folder_.string(), "--out", error.message());
     }
     refuse_foreign();
-    lock_ = open(file(kMark).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    /* A process that this one starts inherits it: the folder stays claimed while that lives and may write. */
+    lock_ = open(file(kMark).c_str(), O_RDWR | O_CREAT, 0644);
     if (lock_ < 0) {
         throw InputError(file(kMark).string(), "open", std::strerror(errno));
     }
     if (flock(lock_, LOCK_EX | LOCK_NB) != 0) {
         close(lock_);
         throw InputError(folder_.string(), "--out", "another run writes there");
+    }
+    try {
+        recover();
+    } catch (...) {
+        close(lock_);
+        throw;
     }
 }
 
@@ -65,7 +74,7 @@ void OutFolder::refuse_foreign() const
         return;
     }
     std::vector<const char *> names(kNames.begin(), kNames.end());
-    names.push_back(kUnfinished);
+    names.insert(names.end(), {kUnfinished, kReplaced, kPlacing});
     for (const char *name : names) {
         if (std::filesystem::exists(file(name), ignored)) {
             throw InputError(folder_.string(), "--out",
@@ -96,26 +105,74 @@ std::filesystem::path OutFolder::unfinished() const
 
 void OutFolder::clear() const
 {
-    for (const char *name : kNames) {
+    std::vector<std::filesystem::path> gone{unfinished()};
+    std::transform(kNames.begin(), kNames.end(), std::back_inserter(gone),
+                   [this](const char *name) { return file(name); });
+    for (const std::filesystem::path &path : gone) {
         std::error_code error;
-        std::filesystem::remove_all(file(name), error);
+        std::filesystem::remove_all(path, error);
         if (error) {
-            throw InputError(file(name).string(), "remove", error.message());
+            throw InputError(path.string(), "remove", error.message());
         }
     }
 }
 
-void OutFolder::replace_by(const std::filesystem::path &from) const
+void OutFolder::move_results(const std::filesystem::path &from, const std::filesystem::path &to)
 {
-    clear();
     for (const char *name : kNames) {
         std::error_code error;
-        if (std::filesystem::exists(from / name, error)) {
-            std::filesystem::rename(from / name, file(name), error);
+        if (std::filesystem::exists(std::filesystem::symlink_status(from / name, error))) {
+            std::filesystem::rename(from / name, to / name, error);
+            if (error) {
+                throw InputError((from / name).string(), "rename", error.message());
+            }
         }
-        if (error) {
-            throw InputError(file(name).string(), "rename", error.message());
+    }
+}
+
+/* What lies in "replaced" and "placing" tells how far it has come: recover() goes on from there. */
+void OutFolder::replace() const
+{
+    const auto replaced = file(kReplaced);
+    std::error_code error;
+    std::filesystem::create_directory(replaced, error);
+    if (error) {
+        throw InputError(replaced.string(), "create", error.message());
+    }
+    try {
+        move_results(folder_, replaced);
+        std::filesystem::rename(unfinished(), file(kPlacing));
+    } catch (const std::exception &failure) {
+        move_results(replaced, folder_);
+        std::filesystem::remove(replaced, error);
+        throw InputError(folder_.string(), "results",
+                         std::string("could not be replaced: ") + failure.what() + "; the new ones are in " +
+                             unfinished().string());
+    }
+    place();
+}
+
+void OutFolder::place() const
+{
+    move_results(file(kPlacing), folder_);
+    std::error_code ignored;
+    std::filesystem::remove_all(file(kPlacing), ignored);
+    std::filesystem::remove_all(file(kReplaced), ignored);
+}
+
+void OutFolder::recover() const
+{
+    std::error_code error;
+    if (std::filesystem::exists(file(kPlacing), error)) {
+        place();
+    } else if (std::filesystem::exists(file(kReplaced), error)) {
+        if (std::filesystem::exists(unfinished(), error)) {
+            move_results(file(kReplaced), folder_);
         }
+        std::filesystem::remove_all(file(kReplaced), error);
+    }
+    if (error) {
+        throw InputError(folder_.string(), "--out", error.message());
     }
 }
 

@@ -89,7 +89,7 @@ std::string filled_page(std::string page, const nlohmann::ordered_json &data)
 {
     /* "<" could end the element that carries the data. */
     constexpr std::string_view kEscaped = "\\u003c";
-    std::string text = data.dump();
+    std::string text = data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
     for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos; at += kEscaped.size()) {
         text.replace(at, 1, kEscaped);
     }

@@ -29,7 +29,6 @@ SinkProcess::Options options_of(const SinkProgram &sink, const UnfinishedRun &ru
     options.database = run.file("sink.db");
     options.out = run.path();
     options.log = run.file("sink.log");
-    options.lock = run.lock();
     return options;
 }
 

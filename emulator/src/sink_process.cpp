@@ -117,9 +117,7 @@ void SinkProcess::start()
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, options_.log.c_str(), O_WRONLY | O_CREAT | O_APPEND,
                                      0644);
     posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-    for (const int kept : {ends[1], options_.lock}) {
-        posix_spawn_file_actions_adddup2(&actions, kept, kept); /* the same number: open beyond exec */
-    }
+    posix_spawn_file_actions_adddup2(&actions, ends[1], ends[1]); /* the same number: open beyond exec */
     /* A process group of its own: a Ctrl-C is this program's to deal with. */
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);

@@ -184,4 +184,9 @@ Json make_summary(const RunRecord &run)
             {"wall_time_s", rounded(run.wall_time_s, 3)}};
 }
 
+std::string summary_text(const Json &summary)
+{
+    return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 } // namespace tsr

@@ -29,6 +29,9 @@ UnfinishedRun::UnfinishedRun(const OutFolder &out) : out_(out), folder_(out.unfi
 
 UnfinishedRun::~UnfinishedRun()
 {
+    if (complete_) {
+        return;
+    }
     std::error_code ignored;
     for (auto entry = fs::directory_iterator(folder_, ignored); entry != fs::directory_iterator();
          entry.increment(ignored)) {
@@ -42,7 +45,8 @@ UnfinishedRun::~UnfinishedRun()
 
 void UnfinishedRun::complete()
 {
-    out_.replace_by(folder_);
+    complete_ = true;
+    out_.replace();
 }
 
 } // namespace tsr

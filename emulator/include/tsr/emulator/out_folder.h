@@ -3,7 +3,7 @@
  * for it alone.
  *
  * A file tarsier-run marks a folder as ours and is locked while a run writes
- * there. A folder that holds files of the names we write but no mark is
+ * there or a process that it has started. A folder that holds files of the names we write but no mark is
  * somebody's own and is refused.
  *
  * SPDX-License-Identifier: Apache-2.0
@@ -31,15 +31,18 @@ class OutFolder
     std::filesystem::path unfinished() const;
     /* Throws InputError if input lies in what clear() or an UnfinishedRun takes away. */
     void refuse_input(const std::filesystem::path &input) const;
-    /* Remove an earlier run's results. Throws InputError. */
+    /* Remove an earlier run's results, and what an unfinished one left. Throws InputError. */
     void clear() const;
-    /* Its results are now those of the folder from, which go from there. Throws InputError. */
-    void replace_by(const std::filesystem::path &from) const;
-    /* A process that inherits it keeps the folder claimed while it lives. */
-    int lock() const { return lock_; }
+    /* The results are now those in unfinished(), which is gone then. Throws InputError: those of before and
+     * unfinished() are as they were. Whatever ends the program meanwhile, the next claim brings it to an end, or back.
+     */
+    void replace() const;
 
   private:
     void refuse_foreign() const;
+    void recover() const;
+    void place() const;
+    static void move_results(const std::filesystem::path &from, const std::filesystem::path &to);
 
     std::filesystem::path folder_;
     int lock_ = -1;

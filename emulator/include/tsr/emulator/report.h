@@ -22,6 +22,8 @@ namespace tsr
 {
 
 nlohmann::ordered_json make_summary(const RunRecord &run);
+/* summary.json. Of a name that is no UTF-8, U+FFFD stands for what is none. */
+std::string summary_text(const nlohmann::ordered_json &summary);
 
 /* nodes.csv, links.csv, maps.csv. Throws InputError. */
 void write_tables(const std::filesystem::path &out, const RunRecord &run);

@@ -35,7 +35,6 @@ class SinkProcess : public SinkLink
         std::filesystem::path database;
         std::filesystem::path out;
         std::filesystem::path log; /* its stdout and stderr */
-        int lock = -1;             /* a descriptor that it inherits: what is locked stays so while it writes */
         /* An end of the run is asked for: an answer is not waited for as long then. */
         std::function<bool()> stopping = [] { return false; };
     };
