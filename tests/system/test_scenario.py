@@ -86,7 +86,7 @@ with tempfile.TemporaryDirectory() as folder:
         refused(program, bad, SCENARIO + "lens = 1\n", "bad.toml:15: camera.lens: unknown field")
         refused(program, bad, SCENARIO.replace("duration_s = 12", "duration_s = -12"), "bad.toml:3: duration_s: -12 is outside")
         refused(program, bad, SCENARIO.replace("count = 2", "distance_m = 1.25\nheights_m = [0.8, 0.8]"), "is inside the basin")
-        refused(program, bad, SCENARIO.replace("count = 2", "angle_deg = -3"), "face apart")
+        refused(program, bad, SCENARIO.replace("count = 2", "angle_deg = -3"), "bad.toml:10: pairs.angle_deg: -3 is outside 0..89.9")
     odd = run(BUILD / "bin/tarsier-emulator", scenario, "--set", "pairs.count=none", "--out", folder / "refused")
     check(odd.returncode == 2 and "--set 'pairs.count=none'" in odd.stderr, odd.stderr)
     print(f"{len(files)} files equal, {live['totals']['maps_received']} maps equal live and played")

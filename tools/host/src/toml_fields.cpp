@@ -114,6 +114,9 @@ std::string TomlFields::string(std::string_view field, std::optional<std::string
     if (value == nullptr) {
         refuse(field, "is not a string");
     }
+    if (value->get().find('\0') != std::string::npos) {
+        refuse(field, "holds a NUL, where a name of a file would end");
+    }
     return value->get();
 }
 
