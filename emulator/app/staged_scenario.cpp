@@ -17,7 +17,8 @@ StagedScenario::StagedScenario(const std::filesystem::path &file, const std::vec
         staging_ = stage_scenario(scenario_);
     }
     keys_ = derive_test_keys(scenario_.seed, site());
-    check_nodes(site(), keys_);
+    const std::uint64_t seen = crowd_ ? 0 : ScenePictures::memory(*staging_);
+    check_memory(site(), scenario_.file, check_nodes(site(), keys_) + seen);
 }
 
 std::unique_ptr<Pictures> StagedScenario::pictures(unsigned threads) const

@@ -84,7 +84,7 @@ int run_recorded(const Options &options)
     }
     const Site site = with_absolute_folders(choose_site(options));
     const KeyRing keys = derive_test_keys(site.seed, site);
-    check_nodes(site, keys);
+    check_memory(site, site.file, check_nodes(site, keys));
     check_recorded(site);
     RecordedPictures pictures(site);
     return run_alone(options, site, keys, pictures);
