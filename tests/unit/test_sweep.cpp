@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "memory_run.h"
+#include "test_host_folder.h"
 #include "tsr/emulator/report.h"
 #include "tsr/emulator/sweep_report.h"
 #include "tsr/host/input_error.h"
@@ -106,6 +107,22 @@ TEST(Sweep, ARunWithoutMapsHasNoLatencyAndNoError)
          {"latency_s_median", "event_latency_s_median", "error_mean_px", "error_median_mm", "matched", "correct"}) {
         EXPECT_TRUE(cell(report, 0, nothing).is_null()) << nothing;
     }
+}
+
+TEST(Sweep, APageHasLargeSeedsWhole)
+{
+    const test::Folder folder;
+    SweepReport report;
+    report.axes = {parse_sweep("seed=9007199254740992,9007199254740993,9223372036854775807")};
+    report.table = {{"seed", "other"}, {}};
+    for (const Json &seed : report.axes[0].values) {
+        report.table.rows.push_back({seed, -1});
+    }
+    write_sweep(folder.path(), report);
+    EXPECT_NE(test::read_all(folder / "index.html")
+                  .find("[[9007199254740992,-1],[\"9007199254740993\",-1],[\"9223372036854775807\",-1]]"),
+              std::string::npos);
+    EXPECT_NE(test::read_all(folder / "sweep.csv").find("\n9223372036854775807,-1\n"), std::string::npos);
 }
 
 TEST(Sweep, AlignsAndBreaksItsTable)
