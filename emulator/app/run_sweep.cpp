@@ -8,6 +8,7 @@
  */
 #include "run_sweep.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <set>
 
@@ -35,7 +36,7 @@ void refuse_set_twice(const std::vector<SweepAxis> &axes, const Settings &settin
 {
     for (const SweepAxis &axis : axes) {
         for (const std::string &setting : settings) {
-            if (key_of(setting) == axis.key) {
+            if (std::ranges::count(fields_of(setting), axis.key) > 0) {
                 throw InputError("command line", "--sweep", axis.key + " is swept and also set to one value");
             }
         }
@@ -61,13 +62,16 @@ Settings joined(Settings settings, const Settings &more)
     return settings;
 }
 
-/* Frames of a crowd are read once for all runs that share them. */
-void check_all(const Options &options, const Settings &settings, const std::vector<Settings> &runs)
+/* The scenario of each run, as the file is now: it may be edited while they run. Frames of a crowd are read once for
+ * all runs that share them. */
+std::vector<Scenario> check_all(const Options &options, const Settings &settings, const std::vector<Settings> &runs)
 {
     std::set<fs::path> read;
+    std::vector<Scenario> scenarios;
     for (const Settings &swept : runs) {
         try {
-            const StagedScenario staged(options.site, joined(settings, swept));
+            scenarios.push_back(load_scenario(options.site, joined(settings, swept)));
+            const StagedScenario staged(scenarios.back());
             if (baseline_of(options)) {
                 baseline_site(staged.site());
             }
@@ -78,6 +82,7 @@ void check_all(const Options &options, const Settings &settings, const std::vect
             refuse_run(swept, error);
         }
     }
+    return scenarios;
 }
 
 /* 1, 2, ... of equal length, so that names sort as numbers do. */
@@ -108,7 +113,7 @@ int run_sweep(const Options &options, const Settings &settings)
     for (const SweepPoint &point : points) {
         runs.push_back(sweep_settings(report.axes, point));
     }
-    check_all(options, settings, runs);
+    const std::vector<Scenario> scenarios = check_all(options, settings, runs);
 
     OutFolder out(options.out);
     out.keep(); /* each run keeps or clears its own folder */
@@ -116,7 +121,7 @@ int run_sweep(const Options &options, const Settings &settings)
     report.planned = points.size();
     Lateness late;
     for (std::size_t i = 0; i < points.size() && stop_signal() == 0; ++i) {
-        const StagedScenario staged(options.site, joined(settings, runs[i]));
+        const StagedScenario staged(scenarios[i]);
         const auto pictures = staged.pictures(options.threads);
         const std::string folder = folder_of(i + 1, points.size());
         const std::string label = "run " + std::to_string(i + 1) + " of " + std::to_string(points.size()) + " ";

@@ -1,6 +1,8 @@
 /* From a scenario file to what a run needs. SPDX-License-Identifier: Apache-2.0 */
 #include "staged_scenario.h"
 
+#include <utility>
+
 #include "tsr/emulator/crowd_pictures.h"
 #include "tsr/emulator/preflight.h"
 #include "tsr/emulator/scene_pictures.h"
@@ -8,8 +10,7 @@
 namespace tsr::app
 {
 
-StagedScenario::StagedScenario(const std::filesystem::path &file, const std::vector<std::string> &settings)
-    : scenario_(load_scenario(file, settings))
+StagedScenario::StagedScenario(Scenario scenario) : scenario_(std::move(scenario))
 {
     if (scenario_.recorded) {
         crowd_ = stage_crowd(scenario_);

@@ -10,7 +10,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "tsr/emulator/pictures.h"
 #include "tsr/host/keys.h"
@@ -23,8 +22,8 @@ namespace tsr::app
 class StagedScenario
 {
   public:
-    /* settings: of --set. Throws InputError. */
-    StagedScenario(const std::filesystem::path &file, const std::vector<std::string> &settings);
+    /* Throws InputError. */
+    explicit StagedScenario(Scenario scenario);
     StagedScenario(const StagedScenario &) = delete;
     StagedScenario &operator=(const StagedScenario &) = delete;
 

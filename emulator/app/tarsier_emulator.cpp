@@ -99,7 +99,7 @@ int run_scenario(const Options &options)
     if (!options.sweeps.empty()) {
         return run_sweep(options, settings);
     }
-    const StagedScenario staged(options.site, settings);
+    const StagedScenario staged(load_scenario(options.site, settings));
     return run_alone(options, staged.site(), staged.keys(), *staged.pictures(options.threads));
 }
 

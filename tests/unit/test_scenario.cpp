@@ -96,6 +96,10 @@ TEST_F(ScenarioFile, ASettingIsNamedInItsRefusal)
     } catch (const tsr::InputError &error) {
         EXPECT_EQ(std::string(error.what()).substr(0, 34), "--set 'pairs.count=0': pairs.count");
     }
+    for (const char *nothing : {"", "  ", "# seed = 3"}) {
+        EXPECT_REFUSED(tsr::load_scenario(write(kTank), {nothing}),
+                       "--set '" + std::string(nothing) + "': is not TABLE.FIELD=VALUE");
+    }
 }
 
 TEST_F(ScenarioFile, RefusesImpossibleGeometry)

@@ -64,6 +64,16 @@ TEST(Sweep, RefusesWhatIsNoListOfValues)
     EXPECT_NE(refusal({"a.b=1]\nother = [2"}).find("is more than a list of values"), std::string::npos);
 }
 
+TEST(Sweep, KnowsAFieldInEverySpelling)
+{
+    for (const char *setting : {"pairs.count=3", " pairs . count = 3", "\"pairs\".count=3", "pairs.'count'=3",
+                                "pairs={count=3}", "[pairs]\ncount=3", "# told\npairs.\"co\\u0075nt\" = 3"}) {
+        EXPECT_EQ(fields_of(setting), (std::vector<std::string>{"pairs.count"})) << setting;
+    }
+    EXPECT_EQ(fields_of("a={b={c=1},d=[{e=1}]}"), (std::vector<std::string>{"a.b.c", "a.d"}));
+    EXPECT_TRUE(fields_of("pairs.count=one").empty());
+}
+
 TEST(Sweep, MakesEveryCombinationTheLastFastest)
 {
     const std::vector<SweepAxis> axes = {parse_sweep("a.b=1,2"), parse_sweep("c='x','y',\"z\\\"\"")};
