@@ -140,6 +140,7 @@ int run_sweep(const Options &options, const Settings &settings)
                     out.path().c_str(), out.file("index.html").c_str());
     }
     print_lateness(late);
+    print_left_out(options, !scenarios.front().zones.empty());
     return exit_status();
 }
 

@@ -8,6 +8,7 @@
  *
  * SPDX-License-Identifier: Apache-2.0
  */
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -72,6 +73,8 @@ Site with_absolute_folders(Site site)
 int run_alone(const Options &options, const Site &site, const KeyRing &keys, Pictures &pictures)
 {
     print_result(options.out, run_site(options, options.out, "", site, keys, pictures));
+    const auto has_zones = [](const SitePair &pair) { return !pair.zones.empty(); };
+    print_left_out(options, std::ranges::any_of(site.pairs, has_zones));
     return exit_status();
 }
 
