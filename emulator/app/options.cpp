@@ -14,7 +14,9 @@ constexpr std::uint64_t kSeedMax = 0x7fffffffffffffff; /* TOML integers are sign
 void declare(CLI::App &app, Options &options)
 {
     app.add_option("SITE", options.site, "site.toml, or scenario.toml of a virtual scene");
-    app.add_option("--set", options.settings, "of a scenario: TABLE.FIELD=VALUE in the place of what the file says");
+    /* One word each: with extra arguments CLI11 also takes "[a,b]" for two words. */
+    app.add_option("--set", options.settings, "of a scenario: TABLE.FIELD=VALUE in the place of what the file says")
+        ->allow_extra_args(false);
     app.add_option("--sweep", options.sweeps,
                    "of a scenario: TABLE.FIELD=A,B,...: a run for each value, and one table; several: each combination")
         ->allow_extra_args(false);

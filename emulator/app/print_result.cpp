@@ -94,6 +94,13 @@ void print_result(const std::filesystem::path &out, const RunOutcome &outcome)
     print_lateness(outcome.late);
 }
 
+void print_left_out(const Options &options, bool has_zones)
+{
+    if (has_zones && baseline_of(options)) {
+        std::printf("a baseline: zones are left out, for they are measured in maps\n");
+    }
+}
+
 void print_lateness(const Lateness &late)
 {
     if (late.worst_s > kLateToldS) {

@@ -12,6 +12,8 @@ namespace tsr::app
 void print_result(const std::filesystem::path &out, const RunOutcome &outcome);
 /* A line if the machine did not keep up. */
 void print_lateness(const Lateness &late);
+/* A line if a baseline leaves zones out. */
+void print_left_out(const Options &options, bool has_zones);
 
 } // namespace tsr::app
 

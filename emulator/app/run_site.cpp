@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "inputs.h"
 #include "progress_bar.h"
 #include "tsr/emulator/pace.h"
 #include "tsr/emulator/report.h"
@@ -28,23 +29,6 @@ namespace
 namespace fs = std::filesystem;
 
 volatile std::sig_atomic_t signal_taken = 0;
-
-/* What the cameras of a site see must not lie where the results go. */
-void refuse_inputs(const OutFolder &out, const Site &site)
-{
-    for (const SiteNode &node : site.nodes) {
-        for (const fs::path &folder : {node.frames, node.frames_right}) {
-            if (!folder.empty()) {
-                out.refuse_input(folder);
-            }
-        }
-    }
-    for (const SitePair &pair : site.pairs) {
-        if (!pair.truth.empty()) {
-            out.refuse_input(pair.truth);
-        }
-    }
-}
 
 /* To the end, or to a signal. */
 Lateness play(const Options &options, const std::string &label, Simulation &simulation)
@@ -103,7 +87,7 @@ RunOutcome run_site(const Options &options, const fs::path &folder, const std::s
     const auto start = std::chrono::steady_clock::now();
     take_signals();
     const OutFolder out(folder);
-    refuse_inputs(out, site);
+    refuse_inputs_of_run(out, options, site, scenario);
     UnfinishedRun run(out);
     write_site(run.file("site.toml"), site);
     load_site(run.file("site.toml")); /* what the sink would refuse is refused here, by name */

@@ -1,5 +1,5 @@
 /*
- * One run of a site, into a folder, with its printed result.
+ * One run of a site, into a folder.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -30,7 +30,8 @@ struct RunOutcome {
     Lateness late;
 };
 
-/* From now on a signal asks for an end: the run then reports what it has. A second one ends the program. */
+/* From now on a signal asks for an end: the run then reports what it has, if its sink answers. A second one ends the
+ * program. */
 void take_signals();
 /* The signal that asked; 0: none. */
 int stop_signal();

@@ -8,12 +8,14 @@
  */
 #include "run_sweep.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <set>
 
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "inputs.h"
 #include "print_result.h"
 #include "run_site.h"
 #include "staged_scenario.h"
@@ -36,7 +38,7 @@ void refuse_set_twice(const std::vector<SweepAxis> &axes, const Settings &settin
 {
     for (const SweepAxis &axis : axes) {
         for (const std::string &setting : settings) {
-            if (key_of(setting) == axis.key) {
+            if (std::ranges::count(fields_of(setting), axis.key) > 0) {
                 throw InputError("command line", "--sweep", axis.key + " is swept and also set to one value");
             }
         }
@@ -62,23 +64,32 @@ Settings joined(Settings settings, const Settings &more)
     return settings;
 }
 
+struct Checked {
+    std::vector<LoadedScenario> scenarios; /* of each run, as the file is now: it may be edited while they run */
+    std::vector<Site> recorded;            /* that crowds see */
+};
+
 /* Frames of a crowd are read once for all runs that share them. */
-void check_all(const Options &options, const Settings &settings, const std::vector<Settings> &runs)
+Checked check_all(const Options &options, const Settings &settings, const std::vector<Settings> &runs)
 {
     std::set<fs::path> read;
+    Checked checked;
     for (const Settings &swept : runs) {
         try {
-            const StagedScenario staged(options.site, joined(settings, swept));
+            checked.scenarios.emplace_back(options.site, joined(settings, swept));
+            const StagedScenario staged(checked.scenarios.back());
             if (baseline_of(options)) {
                 baseline_site(staged.site());
             }
-            if (!staged.recorded().empty() && read.insert(staged.recorded()).second) {
+            if (staged.recorded() != nullptr && read.insert(staged.recorded()->file).second) {
                 staged.pictures(options.threads);
+                checked.recorded.push_back(*staged.recorded());
             }
         } catch (const InputError &error) {
             refuse_run(swept, error);
         }
     }
+    return checked;
 }
 
 /* 1, 2, ... of equal length, so that names sort as numbers do. */
@@ -109,16 +120,16 @@ int run_sweep(const Options &options, const Settings &settings)
     for (const SweepPoint &point : points) {
         runs.push_back(sweep_settings(report.axes, point));
     }
-    check_all(options, settings, runs);
+    const auto [scenarios, recorded] = check_all(options, settings, runs);
 
     take_signals();
     const OutFolder out(options.out);
-    out.refuse_input(options.site); /* it is read again for each run */
+    refuse_inputs_of_sweep(out, options, recorded);
     out.clear();
     report.planned = points.size();
     Lateness late;
     for (std::size_t i = 0; i < points.size() && stop_signal() == 0; ++i) {
-        const StagedScenario staged(options.site, joined(settings, runs[i]));
+        const StagedScenario staged(scenarios[i]);
         const auto pictures = staged.pictures(options.threads);
         const std::string folder = folder_of(i + 1, points.size());
         const std::string label = "run " + std::to_string(i + 1) + " of " + std::to_string(points.size()) + " ";
@@ -137,6 +148,7 @@ int run_sweep(const Options &options, const Settings &settings)
                     out.path().c_str(), out.file("index.html").c_str());
     }
     print_lateness(late);
+    print_left_out(options, !scenarios.front().scenario.zones.empty());
     return exit_status();
 }
 

@@ -1,38 +1,47 @@
 /* From a scenario file to what a run needs. SPDX-License-Identifier: Apache-2.0 */
 #include "staged_scenario.h"
 
+#include <utility>
+
 #include "tsr/emulator/crowd_pictures.h"
 #include "tsr/emulator/preflight.h"
 #include "tsr/emulator/scene_pictures.h"
+#include "tsr/emulator/sweep.h"
 #include "tsr/emulator/sweep.h"
 
 namespace tsr::app
 {
 
-StagedScenario::StagedScenario(const std::filesystem::path &file, const std::vector<std::string> &settings)
-    : scenario_(load_scenario(file, settings)), effective_(file, settings)
+LoadedScenario::LoadedScenario(const std::filesystem::path &file, const std::vector<std::string> &changes)
+    : scenario(load_scenario(file, changes)), effective(file, changes)
 {
-    settings_.scenario = file.filename().string();
-    for (const std::string &setting : settings) {
-        if (key_of(setting) != "seed") { /* the site tells it */
-            settings_.set.push_back(without_folders(setting));
+    settings.scenario = file.filename().string();
+    for (const std::string &change : changes) {
+        if (fields_of(change) != std::vector<std::string>{"seed"}) { /* the site tells it */
+            settings.set.push_back(without_folders(change));
         }
     }
-    if (scenario_.recorded) {
-        crowd_ = stage_crowd(scenario_);
+}
+
+StagedScenario::StagedScenario(LoadedScenario loaded) : loaded_(std::move(loaded))
+{
+    const Scenario &scenario = loaded_.scenario;
+    if (scenario.recorded) {
+        crowd_ = stage_crowd(scenario);
     } else {
-        staging_ = stage_scenario(scenario_);
+        staging_ = stage_scenario(scenario);
     }
-    keys_ = derive_test_keys(scenario_.seed, site());
-    check_nodes(site(), keys_);
+    keys_ = derive_test_keys(scenario.seed, site());
+    const std::uint64_t seen = crowd_ ? 0 : ScenePictures::memory(*staging_);
+    check_memory(site(), scenario.file, check_nodes(site(), keys_) + seen);
 }
 
 std::unique_ptr<Pictures> StagedScenario::pictures(unsigned threads) const
 {
     if (crowd_) {
-        return std::make_unique<CrowdPictures>(*crowd_, scenario_.scene.duration_s);
+        return std::make_unique<CrowdPictures>(*crowd_, loaded_.scenario.scene.duration_s);
     }
-    return std::make_unique<ScenePictures>(scenario_, *staging_, threads);
+    return std::make_unique<ScenePictures>(loaded_.scenario, *staging_, threads);
 }
 
 } // namespace tsr::app

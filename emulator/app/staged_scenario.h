@@ -22,29 +22,37 @@
 namespace tsr::app
 {
 
+/* A scenario as the file is now. */
+struct LoadedScenario {
+    /* settings: of --set and --seed. Throws InputError. */
+    LoadedScenario(const std::filesystem::path &file, const std::vector<std::string> &settings);
+
+    Scenario scenario;
+    EffectiveScenario effective;
+    RunSettings settings;
+};
+
 class StagedScenario
 {
   public:
-    /* settings: of --set and --seed. Throws InputError. */
-    StagedScenario(const std::filesystem::path &file, const std::vector<std::string> &settings);
+    /* Throws InputError. */
+    explicit StagedScenario(LoadedScenario loaded);
     StagedScenario(const StagedScenario &) = delete;
     StagedScenario &operator=(const StagedScenario &) = delete;
 
-    const std::string &name() const { return scenario_.name; }
+    const std::string &name() const { return loaded_.scenario.name; }
     const Site &site() const { return crowd_ ? crowd_->site : staging_->site; }
     const KeyRing &keys() const { return keys_; }
-    const EffectiveScenario &effective() const { return effective_; }
-    const RunSettings &settings() const { return settings_; }
-    /* The recorded site of a crowd; empty: a scene. */
-    std::filesystem::path recorded() const { return crowd_ ? crowd_->recorded.file : std::filesystem::path(); }
+    const EffectiveScenario &effective() const { return loaded_.effective; }
+    const RunSettings &settings() const { return loaded_.settings; }
+    /* The recorded site of a crowd; null: a scene. */
+    const Site *recorded() const { return crowd_ ? &crowd_->recorded : nullptr; }
     /* What cameras see; does not outlive this. Reads all frames of a crowd and throws InputError for those it cannot.
      */
     std::unique_ptr<Pictures> pictures(unsigned threads) const;
 
   private:
-    Scenario scenario_;
-    EffectiveScenario effective_;
-    RunSettings settings_;
+    LoadedScenario loaded_;
     std::optional<Crowd> crowd_; /* either this or a scene */
     std::optional<Staging> staging_;
     KeyRing keys_;

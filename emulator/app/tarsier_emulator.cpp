@@ -8,6 +8,7 @@
  *
  * SPDX-License-Identifier: Apache-2.0
  */
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -75,6 +76,8 @@ int run_alone(const Options &options, const Site &site, const KeyRing &keys, Pic
               const StagedScenario *scenario)
 {
     print_result(options.out, run_site(options, options.out, "", site, keys, pictures, scenario));
+    const auto has_zones = [](const SitePair &pair) { return !pair.zones.empty(); };
+    print_left_out(options, std::ranges::any_of(site.pairs, has_zones));
     return exit_status();
 }
 
@@ -87,7 +90,7 @@ int run_recorded(const Options &options)
     }
     const Site site = with_absolute_folders(choose_site(options));
     const KeyRing keys = derive_test_keys(site.seed, site);
-    check_nodes(site, keys);
+    check_memory(site, site.file, check_nodes(site, keys));
     check_recorded(site);
     RecordedPictures pictures(site);
     return run_alone(options, site, keys, pictures, nullptr);
@@ -102,7 +105,7 @@ int run_scenario(const Options &options)
     if (!options.sweeps.empty()) {
         return run_sweep(options, settings);
     }
-    const StagedScenario staged(options.site, settings);
+    const StagedScenario staged(LoadedScenario(options.site, settings));
     return run_alone(options, staged.site(), staged.keys(), *staged.pictures(options.threads), &staged);
 }
 

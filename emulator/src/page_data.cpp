@@ -40,6 +40,20 @@ std::array<double, 2> range_of(const std::vector<CloudPoint> &points, Axis axis)
     return {low - (high - low) / 2, high + (high - low) / 2};
 }
 
+/* A page's numbers are binary64: whole ones that it would change are texts. */
+void write_out_large(nlohmann::ordered_json &value)
+{
+    constexpr std::uint64_t kExactMax = std::uint64_t{1} << 53;
+    if (value.is_structured()) {
+        for (nlohmann::ordered_json &inner : value) {
+            write_out_large(inner);
+        }
+    } else if (value.is_number_integer() && (value.is_number_unsigned() || value.get<std::int64_t>() > 0) &&
+               value.get<std::uint64_t>() > kExactMax) {
+        value = value.dump();
+    }
+}
+
 } // namespace
 
 std::string base64(std::span<const std::uint8_t> bytes)
@@ -85,8 +99,9 @@ nlohmann::ordered_json cloud_json(const std::filesystem::path &file)
             {"step", step}, {"positions", base64(positions)}, {"colours", base64(colours)}};
 }
 
-std::string filled_page(std::string page, const nlohmann::ordered_json &data)
+std::string filled_page(std::string page, nlohmann::ordered_json data)
 {
+    write_out_large(data);
     /* "<" could end the element that carries the data. */
     constexpr std::string_view kEscaped = "\\u003c";
     std::string text = data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

@@ -18,8 +18,9 @@ std::string base64(std::span<const std::uint8_t> bytes);
 /* Points of the PLY file that the sink wrote, thinned evenly and on a grid: see page.cpp. Throws InputError. */
 nlohmann::ordered_json cloud_json(const std::filesystem::path &file);
 
-/* A page of page_template.h with data in the place of its mark. */
-std::string filled_page(std::string page, const nlohmann::ordered_json &data);
+/* A page of page_template.h with data in the place of its mark; whole numbers above 2^53, as seeds are, become texts.
+ */
+std::string filled_page(std::string page, nlohmann::ordered_json data);
 
 } // namespace tsr
 

@@ -5,7 +5,11 @@
  */
 #include "tsr/emulator/preflight.h"
 
+#include <algorithm>
 #include <string>
+
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "tsr/emulator/node_setup.h"
 #include "tsr/host/input_error.h"
@@ -65,12 +69,41 @@ void check_truth(const Site &site, const SitePair &pair)
     }
 }
 
+std::string gigabytes(std::uint64_t octets)
+{
+    const std::uint64_t tenths = (octets + 50'000'000) / 100'000'000;
+    return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10);
+}
+
 } // namespace
 
-void check_nodes(const Site &site, const KeyRing &keys)
+std::uint64_t check_nodes(const Site &site, const KeyRing &keys)
 {
+    std::uint64_t octets = 0;
     for (const SiteNode &node : site.nodes) {
-        set_up_node(site, node, keys);
+        const auto setup = set_up_node(site, node, keys);
+        tsr_memory_plan plan{};
+        tsr_node_plan_memory(&setup->config, &plan);
+        octets += plan.total;
+    }
+    return octets;
+}
+
+std::uint64_t memory_there()
+{
+    const auto machine =
+        static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+    rlimit limit{};
+    return getrlimit(RLIMIT_AS, &limit) == 0 ? std::min<std::uint64_t>(machine, limit.rlim_cur) : machine;
+}
+
+void check_memory(const Site &site, const std::filesystem::path &file, std::uint64_t needed, std::uint64_t there)
+{
+    if (needed > there) {
+        throw InputError(file.string(), "pairs",
+                         std::to_string(site.pairs.size()) + " pairs need " + gigabytes(needed) +
+                             " GB of memory for their nodes and what their cameras see, and there are " +
+                             gigabytes(there) + " GB");
     }
 }
 

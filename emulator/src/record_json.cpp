@@ -127,7 +127,7 @@ Json view_json(const SitePair *pair)
 double rounded(double value, int digits)
 {
     const double scale = std::pow(10.0, digits);
-    return std::round(value * scale) / scale;
+    return std::round(value * scale) / scale + 0.0; /* -0 is 0 */
 }
 
 Json json_of(const NodeRecord &node)

@@ -8,14 +8,16 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <sstream>
+#include <fstream>
+#include <iomanip>
+#include <string_view>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "tsr/hal/recorded_source.h"
+#include "tsr/host/csv.h"
 #include "tsr/host/input_error.h"
-#include "tsr/host/read_file.h"
 
 namespace tsr
 {
@@ -23,48 +25,56 @@ namespace tsr
 namespace
 {
 
-constexpr const char *kEventsHead = "time_s,what";
+constexpr std::string_view kEventsHead = "time_s,what";
+constexpr std::size_t kEventsLenMax = std::size_t{16} << 20; /* several events a second for a day */
 constexpr double kEventTimeMaxS = 1e9;
 
-SceneEvent read_event(const std::string &line, const std::string &place)
+SceneEvent read_event(std::string_view line, const std::string &place)
 {
     double time_s = 0;
-    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), time_s);
-    if (error != std::errc() || *end != ',' || !(time_s >= 0 && time_s <= kEventTimeMaxS)) {
+    const char *const line_end = line.data() + line.size();
+    const auto [end, error] = std::from_chars(line.data(), line_end, time_s);
+    if (error != std::errc() || end == line_end || *end != ',' || !(time_s >= 0 && time_s <= kEventTimeMaxS)) {
         throw InputError(place, "time_s", "is not a time in seconds before a comma");
     }
-    std::string what(end + 1, line.data() + line.size());
+    auto what = csv_text({end + 1, line_end});
+    if (!what) {
+        throw InputError(place, "what", "its quotation marks are not in pairs");
+    }
     try {
-        (void)nlohmann::json(what).dump(); /* as the page will */
+        (void)nlohmann::json(*what).dump(); /* as the page will */
     } catch (const nlohmann::json::exception &) {
         throw InputError(place, "what", "is not UTF-8 text");
     }
-    return {static_cast<std::uint64_t>(std::llround(time_s * 1e6)), std::move(what)};
+    return {static_cast<std::uint64_t>(std::llround(time_s * 1e6)), std::move(*what)};
 }
 
-/* Another file of this name is somebody else's, or a sink's. */
+/* Another file of this name is somebody else's, or a sink's: not even its size matters. */
+bool has_events(const std::filesystem::path &file)
+{
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored)) {
+        return false;
+    }
+    std::string line;
+    std::ifstream stream(file);
+    stream >> std::setw(static_cast<int>(kByteOrderMark.size() + kEventsHead.size() + 1)) >> line;
+    return line == kEventsHead || line == std::string(kByteOrderMark).append(kEventsHead);
+}
+
 std::vector<SceneEvent> read_events(const std::filesystem::path &site_file)
 {
     const auto file = site_file.parent_path() / "events.csv";
     std::vector<SceneEvent> events;
-    std::error_code ignored;
-    if (site_file.empty() || !std::filesystem::is_regular_file(file, ignored)) {
+    if (site_file.empty() || !has_events(file)) {
         return events;
     }
-    std::istringstream text(read_text_file(file));
-    std::string line;
-    const auto next_line = [&] {
-        const bool there = static_cast<bool>(std::getline(text, line));
-        if (there && line.ends_with('\r')) {
-            line.pop_back();
-        }
-        return there;
-    };
-    if (!next_line() || line != kEventsHead) {
+    CsvLines lines(file, kEventsLenMax);
+    if (lines.next() != kEventsHead) {
         return events;
     }
-    for (int number = 2; next_line(); ++number) {
-        events.push_back(read_event(line, file.string() + ":" + std::to_string(number)));
+    while (const auto line = lines.next()) {
+        events.push_back(read_event(*line, lines.place()));
     }
     std::stable_sort(events.begin(), events.end(),
                      [](const SceneEvent &a, const SceneEvent &b) { return a.time_us < b.time_us; });
@@ -110,12 +120,16 @@ std::optional<std::filesystem::path> truth_file_for(const std::filesystem::path 
 {
     const std::string frame_stem = std::filesystem::path(frame_name).stem().string();
     std::optional<std::filesystem::path> newest;
-    for (const auto &entry : std::filesystem::directory_iterator(folder)) {
-        const auto &file = entry.path();
+    std::error_code error;
+    for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+        const auto &file = at->path();
         if (file.extension() == ".pfm" && file.stem().string() <= frame_stem &&
             (!newest || newest->stem().string() < file.stem().string())) {
             newest = file;
         }
+    }
+    if (error) {
+        throw InputError(folder.string(), "truth", error.message());
     }
     return newest;
 }

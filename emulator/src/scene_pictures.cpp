@@ -55,6 +55,16 @@ ScenePictures::ScenePictures(const Scenario &scenario, const Staging &staging, u
     }
 }
 
+std::uint64_t ScenePictures::memory(const Staging &staging)
+{
+    std::uint64_t octets = 0;
+    for (const auto &[node, right, camera] : staging.cameras) {
+        octets += static_cast<std::uint64_t>(camera.width) * static_cast<std::uint64_t>(camera.height) *
+                  scene::View::kOctetsPerPixel;
+    }
+    return octets;
+}
+
 VirtualCamera *ScenePictures::camera(std::uint16_t node, bool right)
 {
     const auto found = cameras_.find({node, right});

@@ -78,13 +78,41 @@ toml::table parse_list(const std::string &place, const std::string &list)
     }
 }
 
-} // namespace
+void add_fields(const toml::table &table, const std::string &prefix, std::vector<std::string> &fields)
+{
+    for (const auto &[key, value] : table) {
+        const std::string field = prefix + std::string(key.str());
+        if (const toml::table *inner = value.as_table()) {
+            add_fields(*inner, field + ".", fields);
+        } else {
+            fields.push_back(field);
+        }
+    }
+}
 
+/* The key of KEY=..., without the blanks around it. */
 std::string key_of(const std::string &setting)
 {
     const std::string key = setting.substr(0, setting.find('='));
     const auto first = key.find_first_not_of(" \t");
     return first == std::string::npos ? "" : key.substr(first, key.find_last_not_of(" \t") + 1 - first);
+}
+
+} // namespace
+
+std::vector<std::string> fields_of(const std::string &setting)
+{
+    constexpr std::size_t kSettingMax = 4096; /* longer lines are refused when they are set: dots are parsed in depth */
+    std::vector<std::string> fields;
+    if (setting.size() > kSettingMax) {
+        return fields;
+    }
+    try {
+        add_fields(toml::parse(setting), "", fields);
+    } catch (const toml::parse_error &) {
+        return {};
+    }
+    return fields;
 }
 
 SweepAxis parse_sweep(const std::string &option)

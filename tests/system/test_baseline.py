@@ -91,6 +91,11 @@ with tempfile.TemporaryDirectory() as folder:
     check_pictures(changes, folder / "changes", "changes")
     again = emulate(SCENARIO, folder / "again", *ONE_BOARD, "--baseline", "changes", "--threads", "1")
     check({**again, "wall_time_s": 0} == {**changes, "wall_time_s": 0}, "the same seed gives another run")
+    zone = ("--set", 'zone=[{name="z",rectangle=[0,0,9,9],changed_by_m=1}]')
+    for left_out, options in ((True, zone), (True, (*zone, "--sweep", "seed=1")), (False, ())):
+        words = [BUILD / "bin/tarsier-emulator", SCENARIO, "--out", folder / "zone", "--set", "duration_s=10", *ONE_BOARD[:2], "--baseline", "changes", *options]
+        told = subprocess.run([str(word) for word in words], capture_output=True, text=True, check=True).stdout
+        check(("zones are left out" in told) == left_out, f"{options}: {told}")
     stream = emulate(SCENARIO, folder / "stream", *ONE_BOARD, "--baseline", "stream")
     check_pictures(stream, folder / "stream", "stream")
     check(maps["baseline"] is None, "maps are no baseline")

@@ -48,6 +48,9 @@ with tempfile.TemporaryDirectory() as folder:
         check(not (folder / "refused").exists(), f"{options}: something was written")
 
     refuse("recorded.site: there is no ")
+    (folder / "loop").symlink_to("loop")
+    refuse("crowd.toml: recorded.site: ", "--set", 'recorded.site="loop/site.toml"')
+    refuse("File name too long", "--set", f'recorded.site="{"n" * 300}/site.toml"')
     (folder / "scene.toml").write_text(SCENE)
     rendered = run(BUILD / "bin/tarsier", "render", folder / "scene.toml", "--out", folder / "frames")
     check(rendered.returncode == 0, rendered.stderr)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import csv
 import pathlib
+import resource
 import struct
 import subprocess
 import sys
@@ -102,7 +103,14 @@ with tempfile.TemporaryDirectory() as folder:
         refused(program, bad, SCENARIO + "lens = 1\n", "bad.toml:15: camera.lens: unknown field")
         refused(program, bad, SCENARIO.replace("duration_s = 12", "duration_s = -12"), "bad.toml:3: duration_s: -12 is outside")
         refused(program, bad, SCENARIO.replace("count = 2", "distance_m = 1.25\nheights_m = [0.8, 0.8]"), "is inside the basin")
-        refused(program, bad, SCENARIO.replace("count = 2", "angle_deg = -3"), "face apart")
+        refused(program, bad, SCENARIO.replace("count = 2", "angle_deg = -3"), "bad.toml:10: pairs.angle_deg: -3 is outside 0..89.9")
+    def limited():
+        resource.setrlimit(resource.RLIMIT_AS, (1 << 32, 1 << 32))
+
+    large = subprocess.run([str(BUILD / "bin/tarsier-emulator"), str(scenario), "--out", str(folder / "refused"), "--set", "pairs.count=500",
+                            "--set", "pairs.width=640", "--set", "pairs.height=480"], capture_output=True, text=True, preexec_fn=limited)
+    check(large.returncode == 2 and "scenario.toml: pairs: 500 pairs need 2" in large.stderr and "there are 4.3 GB" in large.stderr, large.stderr)
+    check(not (folder / "refused").exists(), "something was written")
     odd = run(BUILD / "bin/tarsier-emulator", scenario, "--set", "pairs.count=none", "--out", folder / "refused")
     check(odd.returncode == 2 and "--set 'pairs.count=none'" in odd.stderr, odd.stderr)
     print(f"{len(files)} files equal, {live['totals']['maps_received']} maps equal live and played")

@@ -131,6 +131,8 @@ def check_refusals(folder, scenario):
             ("--sweep 'pairs.count': is not", scenario, "--sweep", "pairs.count"),
             ("seed is swept and also set", scenario, "--sweep", "seed=1,2", "--seed", "3"),
             ("pairs.count is swept and also set", scenario, "--sweep", "pairs.count=1,2", "--set", " pairs.count = 3"),
+            ("pairs.count is swept and also set", scenario, "--sweep", "pairs.count=1,2", "--set", '"pairs" . \'count\' = 3'),
+            ("--set '[pairs.count=2,seed=5]':1: TOML", scenario, "--set", "[pairs.count=2,seed=5]"),
             ("seed is swept twice", scenario, "--sweep", "seed=1,2", "--sweep", "seed=3"),
             ("makes more than 1000 runs", scenario, "--sweep", "seed=" + ",".join(map(str, range(1001)))),
             ("--set 'pairs.count=0': pairs.count: 0 is outside", scenario, "--sweep", "seed=1,2", "--set", "pairs.count=0"),
@@ -170,6 +172,21 @@ def check_signal(folder, scenario):
     check(data["planned"] == 3 and len(data["rows"]) == 2, "the page does not tell what is missing")
 
 
+def check_edited(folder, scenario):
+    """All runs are of the file as it was when the sweep began."""
+    edited, out = folder / "edited.toml", folder / "edited"
+    text = scenario.read_text()
+    edited.write_text(text)
+    words = [EMULATOR, edited, "--out", out, "--quiet", "--sweep", "duration_s=10,11", "--speed", "20"]
+    emulator = subprocess.Popen([str(word) for word in words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    while not (out / "runs/1/sink.db").exists():
+        check(emulator.poll() is None, "ended early")
+        time.sleep(0.05)
+    edited.write_text(text + "[nonsense]\n")
+    _, told = emulator.communicate(timeout=120)
+    check(emulator.returncode == 0 and len(table(out)) == 2, f"{emulator.returncode} {told}")
+
+
 def check_speed(folder, scenario):
     """Paced by the wall clock: as long as it must take, and the same bytes."""
     emulate(scenario, folder / "free")
@@ -191,5 +208,6 @@ with tempfile.TemporaryDirectory() as name:
     figures = check_product(folder, scenario)
     check_refusals(folder, scenario)
     check_signal(folder, scenario)
+    check_edited(folder, scenario)
     check_speed(folder, scenario)
     print(f"{figures} figures of each run are those of its summary")

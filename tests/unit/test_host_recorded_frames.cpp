@@ -43,7 +43,8 @@ TEST(HostFrames, TimesFileDecidesOrderAndTime)
     const Folder folder;
     folder.put("a.pgm", pgm(4, 3, 'a'));
     folder.put("b.pgm", pgm(4, 3, 'b'));
-    folder.put("times.csv", "file,time_ms\r\nb.pgm,10\r\na.pgm,40\nb.pgm,50\n");
+    folder.put("times.csv", "\xef\xbb\xbf"
+                            "file,time_ms\r\n\"b.pgm\",10\r\n\na.pgm,40\nb.pgm,50\n\r\n");
     RecordedFrames frames(folder.path(), 1);
     ASSERT_EQ(frames.count(), 3u);
     EXPECT_EQ(frames.frame(0)->pixels[0], 'b');
@@ -101,6 +102,7 @@ TEST(HostFrames, RefusesTimesThatDoNotFit)
     refuse("file,time_ms\na.pgm,5\na.pgm,5\n", "times.csv:3: time_ms: is not later");
     refuse("file,time_ms\nz.pgm,5\n", "z.pgm: No such file");
     refuse("file,time_ms\n../a.pgm,5\n", "times.csv:2: file");
+    refuse("file,time_ms\n\n\"a.pgm,5\n", "times.csv:3: file");
 }
 
 TEST(HostFrames, RecordingsHaveThePairsSize)

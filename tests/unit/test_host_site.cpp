@@ -297,6 +297,13 @@ TEST(HostSite, RefusesPairsThatDoNotExist)
     EXPECT_SITE_REFUSED(with("focal_px = 150.5", "focal_px = 150.5\nd0_px = 2"), "d0_px: is not search_start_px plus");
     EXPECT_SITE_REFUSED(with("focal_px = 150.5", "focal_px = 150.5\nstep_px = 0.3"), "step_px");
     EXPECT_SITE_REFUSED(with(", principal_px = [81.5, 60] }", "}\nd0_px = -40"), "no searched disparity");
+    EXPECT_SITE_REFUSED(with("\nprincipal_px = [80, 60]", "\nprincipal_px = [1281, 60]"),
+                        "principal_px: is farther than 8 times");
+    EXPECT_SITE_REFUSED(with("\nprincipal_px = [80, 60]", "\nprincipal_px = [80, -960.5]"),
+                        "principal_px: is farther than 8 times");
+    EXPECT_SITE_REFUSED(with("principal_px = [81.5, 60]", "principal_px = [81.5, 1e300]"),
+                        "right.principal_px: is farther");
+    EXPECT_SITE_REFUSED(with("name = \"attic\"", "name = \"at\\u0000tic\""), "name: holds a NUL");
 }
 
 TEST(HostSite, RefusesCamerasThatAreNotRectified)

@@ -93,7 +93,8 @@ TEST(HostZone, RefusesFieldsThatCannotBe)
 
 TEST(HostZone, HasExactlyOneLimit)
 {
-    EXPECT_ZONE_REFUSED(with("below_m = 1.5\n", ""), "zone 'door': below_m: or above_m or changed_by_m is missing");
+    EXPECT_ZONE_REFUSED(with("below_m = 1.5\n", ""),
+                        "zone 'door': below_m: is missing, and so are above_m and changed_by_m");
     EXPECT_ZONE_REFUSED(kDoor + "above_m = 2\n", "a zone has one of them");
     EXPECT_ZONE_REFUSED(with("1.5", "-1"), "below_m: -1 is outside");
     EXPECT_ZONE_REFUSED(with("1.5", "nan"), "below_m");

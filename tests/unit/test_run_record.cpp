@@ -286,6 +286,14 @@ TEST(RunRecord, NamesAreQuotedInTables)
     EXPECT_EQ(csv_of(table), "name,value\n\"left, \"\"upper\"\"\",1\n,2.5\n");
 }
 
+TEST(RunRecord, NothingIsMinusZero)
+{
+    for (const double value : {-0.0, -0.0004, 0.0004, 0.0}) {
+        EXPECT_EQ(nlohmann::json(rounded(value, 3)).dump(), "0.0") << value;
+    }
+    EXPECT_EQ(rounded(-0.0006, 3), -0.001);
+}
+
 TEST(RunRecord, QuantilesAreNearestRanks)
 {
     std::vector<double> values = {3, 1, 2, 4};

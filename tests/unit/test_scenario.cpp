@@ -142,7 +142,7 @@ TEST_F(ScenarioFile, RefusesByLineAndField)
     EXPECT_EQ(refusal("name = \"t\"\nduration_s = -1\n[scene]\nkind = \"tank\"\n").substr(0, 29),
               "scenario.toml:2: duration_s: ");
     EXPECT_EQ(refusal(std::string(kTank) + "[pairs]\nangle_deg = -5\n"),
-              "scenario.toml:6: pairs.angle_deg: is below 0: the cameras of a pair face apart");
+              "scenario.toml:6: pairs.angle_deg: -5 is outside 0..89.9");
 }
 
 TEST_F(ScenarioFile, ASettingIsNamedInItsRefusal)
@@ -152,6 +152,10 @@ TEST_F(ScenarioFile, ASettingIsNamedInItsRefusal)
         FAIL();
     } catch (const tsr::InputError &error) {
         EXPECT_EQ(std::string(error.what()).substr(0, 34), "--set 'pairs.count=0': pairs.count");
+    }
+    for (const char *nothing : {"", "  ", "# seed = 3"}) {
+        EXPECT_REFUSED(tsr::load_scenario(write(kTank), {nothing}),
+                       "--set '" + std::string(nothing) + "': is not TABLE.FIELD=VALUE");
     }
 }
 

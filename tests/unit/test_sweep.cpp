@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "memory_run.h"
+#include "test_host_folder.h"
 #include "tsr/emulator/report.h"
 #include "tsr/emulator/sweep_report.h"
 #include "tsr/host/input_error.h"
@@ -63,6 +64,16 @@ TEST(Sweep, RefusesWhatIsNoListOfValues)
     EXPECT_NE(refusal({"a.b=1]\nother = [2"}).find("is more than a list of values"), std::string::npos);
 }
 
+TEST(Sweep, KnowsAFieldInEverySpelling)
+{
+    for (const char *setting : {"pairs.count=3", " pairs . count = 3", "\"pairs\".count=3", "pairs.'count'=3",
+                                "pairs={count=3}", "[pairs]\ncount=3", "# told\npairs.\"co\\u0075nt\" = 3"}) {
+        EXPECT_EQ(fields_of(setting), (std::vector<std::string>{"pairs.count"})) << setting;
+    }
+    EXPECT_EQ(fields_of("a={b={c=1},d=[{e=1}]}"), (std::vector<std::string>{"a.b.c", "a.d"}));
+    EXPECT_TRUE(fields_of("pairs.count=one").empty());
+}
+
 TEST(Sweep, MakesEveryCombinationTheLastFastest)
 {
     const std::vector<SweepAxis> axes = {parse_sweep("a.b=1,2"), parse_sweep("c='x','y',\"z\\\"\"")};
@@ -106,6 +117,22 @@ TEST(Sweep, ARunWithoutMapsHasNoLatencyAndNoError)
          {"latency_s_median", "event_latency_s_median", "error_mean_px", "error_median_mm", "matched", "correct"}) {
         EXPECT_TRUE(cell(report, 0, nothing).is_null()) << nothing;
     }
+}
+
+TEST(Sweep, APageHasLargeSeedsWhole)
+{
+    const test::Folder folder;
+    SweepReport report;
+    report.axes = {parse_sweep("seed=9007199254740992,9007199254740993,9223372036854775807")};
+    report.table = {{"seed", "other"}, {}};
+    for (const Json &seed : report.axes[0].values) {
+        report.table.rows.push_back({seed, -1});
+    }
+    write_sweep(folder.path(), report);
+    EXPECT_NE(test::read_all(folder / "index.html")
+                  .find("[[9007199254740992,-1],[\"9007199254740993\",-1],[\"9223372036854775807\",-1]]"),
+              std::string::npos);
+    EXPECT_NE(test::read_all(folder / "sweep.csv").find("\n9223372036854775807,-1\n"), std::string::npos);
 }
 
 TEST(Sweep, AlignsAndBreaksItsTable)

@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
-#include <sstream>
 #include <string>
 
+#include "tsr/host/csv.h"
 #include "tsr/host/input_error.h"
-#include "tsr/host/read_file.h"
 #include "tsr/host/site.h"
 
 namespace tsr
@@ -32,12 +31,12 @@ bool is_frame_name(const fs::path &file)
     return extension == ".pgm" || extension == ".png" || extension == ".jpg" || extension == ".jpeg";
 }
 
-std::uint64_t parse_time(const std::string &text, const std::string &place)
+std::uint64_t parse_time(std::string_view text, const std::string &place)
 {
     std::uint64_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || value > kTimeMaxMs) {
-        throw InputError(place, "time_ms", "'" + text + "' is not a number of 0..2^53");
+        throw InputError(place, "time_ms", "'" + std::string(text) + "' is not a number of 0..2^53");
     }
     return value;
 }
@@ -96,35 +95,24 @@ void RecordedFrames::list_folder()
 
 void RecordedFrames::read_times(const fs::path &times_file)
 {
-    std::istringstream lines(read_text_file(times_file, kTimesLenMax));
+    CsvLines lines(times_file, kTimesLenMax);
     std::map<std::string, std::size_t> known; /* a file may come many times */
-    std::string line;
-    for (int number = 1; std::getline(lines, line); number++) {
-        const std::string place = times_file.string() + ":" + std::to_string(number);
-        if (!line.empty() && line.back() == '\r') {
-            line.pop_back();
+    if (const auto header = lines.next(); header && header != "file,time_ms") {
+        throw InputError(lines.place(), "header", "is not 'file,time_ms'");
+    }
+    while (const auto line = lines.next()) {
+        const std::size_t comma = line->rfind(',');
+        const auto name = csv_text(line->substr(0, comma));
+        if (comma == std::string_view::npos || !name || name->empty() || fs::path(*name).has_parent_path()) {
+            throw InputError(lines.place(), "file", "a line is: name of a file in this folder, comma, time");
         }
-        if (number == 1) {
-            if (line != "file,time_ms") {
-                throw InputError(place, "header", "is not 'file,time_ms'");
-            }
-            continue;
-        }
-        if (line.empty()) {
-            continue;
-        }
-        const std::size_t comma = line.rfind(',');
-        const std::string name = line.substr(0, comma);
-        if (comma == std::string::npos || name.empty() || fs::path(name).has_parent_path()) {
-            throw InputError(place, "file", "a line is: name of a file in this folder, comma, time");
-        }
-        const std::uint64_t time_ms = parse_time(line.substr(comma + 1), place);
+        const std::uint64_t time_ms = parse_time(line->substr(comma + 1), lines.place());
         if (!entries_.empty() && time_ms <= entries_.back().time_ms) {
-            throw InputError(place, "time_ms", "is not later than the line before");
+            throw InputError(lines.place(), "time_ms", "is not later than the line before");
         }
-        const auto [file, is_new] = known.emplace(name, files_.size());
+        const auto [file, is_new] = known.emplace(*name, files_.size());
         if (is_new) {
-            files_.push_back({folder_ / name, nullptr});
+            files_.push_back({folder_ / *name, nullptr});
         }
         entries_.push_back({file->second, time_ms});
     }

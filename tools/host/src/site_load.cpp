@@ -72,13 +72,29 @@ SitePose read_pose(TomlFields &fields)
     return pose;
 }
 
+/* Crops of large sensors and converging cameras have it outside the picture, but not beyond so many pictures. */
+constexpr int kPrincipalMax = 8;
+
+void read_principal(TomlFields &fields, const SitePair &pair, std::array<double, 2> &principal_px)
+{
+    fields.numbers("principal_px", principal_px.data(), principal_px.size(), false);
+    if (std::abs(principal_px[0]) > kPrincipalMax * pair.width ||
+        std::abs(principal_px[1]) > kPrincipalMax * pair.height) {
+        fields.refuse("principal_px", "is farther than " + std::to_string(kPrincipalMax) + " times the pair's " +
+                                          std::to_string(pair.width) + "x" + std::to_string(pair.height) +
+                                          " from the first pixel");
+    }
+}
+
 /* d0 stands in the file, follows from the right principal point, or both agree. */
 void read_offset(TomlFields &fields, TomlFields *right, SitePair &pair)
 {
     double derived = pair.search_start_px;
     const bool right_principal = right != nullptr && right->has("principal_px");
     if (right_principal) {
-        derived += right->numbers<2>("principal_px")[0] - pair.principal_px[0];
+        std::array<double, 2> principal_px{};
+        read_principal(*right, pair, principal_px);
+        derived += principal_px[0] - pair.principal_px[0];
     }
     pair.d0_px = fields.number("d0_px", -2047, 2047, derived);
     if (right_principal && std::abs(pair.d0_px - derived) > 0.01) {
@@ -102,7 +118,7 @@ SitePair read_pair(TomlFields &fields)
     pair.focal_px = fields.number("focal_px", 1, kAnyLarge);
     pair.baseline_mm = fields.number("baseline_mm", 0.001, kAnyLarge);
     pair.principal_px = {(pair.width - 1) / 2.0, (pair.height - 1) / 2.0};
-    fields.numbers("principal_px", pair.principal_px.data(), pair.principal_px.size(), false);
+    read_principal(fields, pair, pair.principal_px);
     if (auto left = fields.table("left")) {
         pair.left = read_pose(*left);
         left->refuse_unknown();

@@ -114,6 +114,9 @@ std::string TomlFields::string(std::string_view field, std::optional<std::string
     if (value == nullptr) {
         refuse(field, "is not a string");
     }
+    if (value->get().find('\0') != std::string::npos) {
+        refuse(field, "holds a NUL, where a name of a file would end");
+    }
     return value->get();
 }
 
@@ -233,7 +236,7 @@ std::vector<TomlFields> TomlFields::tables(std::string_view field)
     }
     const toml::array *array = node->as_array();
     if (array == nullptr || !(array->empty() || array->is_homogeneous(toml::node_type::table))) {
-        refuse(field, "is not a list of tables, [[" + std::string(field) + "]]; --set cannot write one");
+        refuse(field, "is not a list of tables, [[" + std::string(field) + "]]");
     }
     for (std::size_t i = 0; i < array->size(); i++) {
         result.emplace_back(*array->get(i)->as_table(), file_, std::string(field) + " " + std::to_string(i + 1));
@@ -258,7 +261,12 @@ TomlFile::TomlFile(const std::filesystem::path &file)
 TomlFile::TomlFile(const std::filesystem::path &file, const std::vector<std::string> &settings) : TomlFile(file)
 {
     for (const std::string &setting : settings) {
-        overwrite(table_, parse("--set '" + setting + "'", setting));
+        const std::string place = "--set '" + setting + "'";
+        toml::table table = parse(place, setting);
+        if (table.empty()) {
+            throw InputError(place, "", "is not TABLE.FIELD=VALUE");
+        }
+        overwrite(table_, std::move(table));
     }
 }
 

@@ -34,8 +34,10 @@ void read_kind(TomlFields &fields, SiteZone &zone)
     const auto given =
         std::count_if(kKinds.begin(), kKinds.end(), [&](const Kind &kind) { return fields.has(kind.field); });
     if (given != 1) {
-        fields.refuse("below_m", given == 0 ? "or above_m or changed_by_m is missing"
-                                            : "above_m and changed_by_m: a zone has one of them");
+        fields.refuse("below_m",
+                      given == 0
+                          ? "is missing, and so are above_m and changed_by_m"
+                          : "stands with above_m or changed_by_m, or these two together: a zone has one of them");
     }
     for (const Kind &kind : kKinds) {
         if (fields.has(kind.field)) {

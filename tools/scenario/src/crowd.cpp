@@ -188,7 +188,11 @@ void start_outwards(Site &site, const Scenario &scenario)
 Site load_recorded(const Scenario &scenario)
 {
     const auto file = scenario.file.parent_path() / scenario.recorded->site;
-    if (!std::filesystem::exists(file)) {
+    std::error_code error;
+    if (!std::filesystem::exists(file, error) && error) {
+        throw InputError(scenario.file.string(), "recorded.site", file.string() + ": " + error.message());
+    }
+    if (!std::filesystem::exists(file, error)) {
         throw InputError(scenario.file.string(), "recorded.site",
                          "there is no " + file.string() + "; tarsier render makes such a site of a scene");
     }

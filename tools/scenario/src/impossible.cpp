@@ -56,7 +56,7 @@ void refuse_impossible(const Scenario &scenario, const Staging &staging)
                          "the image folds: no point of the scene belongs to some of its pixels");
     }
     const double shift = std::abs(right.camera.principal_px.x() - left.camera.principal_px.x());
-    if (scenario.pairs.angle_deg >= 90 || shift > (1 - kOverlapMin) * scenario.pairs.width) {
+    if (shift > (1 - kOverlapMin) * scenario.pairs.width) {
         throw InputError(file, "pairs.angle_deg",
                          number(scenario.pairs.angle_deg) +
                              " degrees: the two views of a pair share less than a fifth of their width");

@@ -16,6 +16,7 @@
 
 #include "partial_folder.h"
 #include "tsr/host/atomic_file.h"
+#include "tsr/host/csv.h"
 #include "tsr/host/image_file.h"
 #include "tsr/host/input_error.h"
 #include "tsr/scenario/virtual_camera.h"
@@ -104,11 +105,11 @@ void write_lists(const fs::path &folder, const scene::World &world)
     std::ostringstream events, objects;
     events << "time_s,what\n" << std::fixed << std::setprecision(3);
     for (const scene::Event &event : world.events) {
-        events << static_cast<double>(event.time_us) / 1e6 << ',' << event.what << '\n';
+        events << static_cast<double>(event.time_us) / 1e6 << ',' << csv_field(event.what) << '\n';
     }
     objects << "number,name\n";
     for (std::size_t i = 0; i < world.objects.size(); ++i) {
-        objects << i << ',' << world.objects[i] << '\n';
+        objects << i << ',' << csv_field(world.objects[i]) << '\n';
     }
     write_file_atomically(folder / "events.csv", events.str());
     write_file_atomically(folder / "objects.csv", objects.str());

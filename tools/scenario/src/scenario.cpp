@@ -19,7 +19,8 @@ namespace
 {
 
 constexpr double kDayS = 86'400;
-constexpr int kCrowdMax = 10'000; /* pairs */
+constexpr int kCrowdMax = 10'000;     /* pairs */
+constexpr double kAngleDegMax = 89.9; /* the axes meet; below 0 they would part */
 
 std::string shown(double value)
 {
@@ -96,10 +97,7 @@ void read_pairs(TomlFields &fields, ScenarioPairs &pairs)
     pairs.search_start_px = static_cast<int>(fields.integer("search_start_px", -640, 640, pairs.search_start_px));
     pairs.fov_deg = fields.has("fov_deg") ? fields.number("fov_deg", 10, 150) : 0;
     pairs.baseline_mm = fields.number("baseline_mm", 1, 10'000, pairs.baseline_mm);
-    pairs.angle_deg = fields.number("angle_deg", -180, 180, pairs.angle_deg);
-    if (pairs.angle_deg < 0) {
-        fields.refuse("angle_deg", "is below 0: the cameras of a pair face apart");
-    }
+    pairs.angle_deg = fields.number("angle_deg", 0, kAngleDegMax, pairs.angle_deg);
     pairs.watch_period_ms =
         static_cast<std::uint32_t>(fields.integer("watch_period_ms", 1, kWatchPeriodMsMax, pairs.watch_period_ms));
     pairs.step_px = fields.number("step_px", 0.0625, 1, pairs.step_px);

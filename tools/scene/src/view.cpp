@@ -42,6 +42,8 @@ View::View(const Geometry &geometry, const Camera &camera)
     layers_.sun.resize(pixels);
     layers_.lamp.resize(pixels);
     dirty_.resize(pixels);
+    image_points_.reserve(pixels);
+    directions_.reserve(kSamples * pixels);
     row_bounds_.resize(static_cast<std::size_t>(camera.height));
     for (int y = 0; y < camera.height; ++y) {
         for (int x = 0; x < camera.width; ++x) {

@@ -73,7 +73,8 @@ Command declare_render(CLI::App &command)
     auto options = std::make_shared<Options>();
     command.add_option("SCENARIO", options->scenario, "scenario.toml")->required();
     command.add_option("--out", options->render.out, "folder to write, new or empty")->required();
-    command.add_option("--set", options->settings, "TABLE.FIELD=VALUE in the place of what the file says");
+    command.add_option("--set", options->settings, "TABLE.FIELD=VALUE in the place of what the file says")
+        ->allow_extra_args(false);
     command.add_option("--period-ms", options->render.period_ms, "between frames; by default the watch period")
         ->check(CLI::Range(1, 3'600'000));
     command.add_option("--threads", options->render.threads, "by default as many as the machine has")

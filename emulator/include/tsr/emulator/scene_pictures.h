@@ -21,6 +21,8 @@ class ScenePictures : public Pictures
   public:
     /* Scenario and staging are kept. threads >= 1 render; the result does not depend on their number. */
     ScenePictures(const Scenario &scenario, const Staging &staging, unsigned threads);
+    /* Octets of what its cameras keep between captures. */
+    static std::uint64_t memory(const Staging &staging);
 
     std::unique_ptr<FrameSource> source(const SiteNode &node, bool right) override;
     std::uint64_t end_us() const override;

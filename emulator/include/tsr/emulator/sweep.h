@@ -36,8 +36,9 @@ std::vector<SweepPoint> sweep_points(const std::vector<SweepAxis> &axes);
 /* A point as --set takes it: KEY=VALUE for each axis. */
 std::vector<std::string> sweep_settings(const std::vector<SweepAxis> &axes, const SweepPoint &point);
 
-/* The key of KEY=..., without the blanks around it. */
-std::string key_of(const std::string &setting);
+/* The fields that a setting of --set writes, TABLE.FIELD however it is spelled: quoted, with blanks, as an inline
+ * table. None if it is no TOML. */
+std::vector<std::string> fields_of(const std::string &setting);
 
 } // namespace tsr
 

@@ -19,7 +19,7 @@ namespace tsr
 inline constexpr int kExitInternal = 1; /* a defect or an exhausted machine */
 inline constexpr int kExitInput = 2;    /* the caller's input is refused */
 
-/* Control characters, which a damaged file can smuggle into a reason, print as '?'. */
+/* Control characters and what is not UTF-8, which a file or its name can smuggle into a line, are printed as \xNN. */
 class InputError : public std::runtime_error
 {
   public:
@@ -38,8 +38,9 @@ class InputError : public std::runtime_error
 
 /*
  * The body of a main(): its result is the exit status; an InputError prints
- * "program: file: field: reason" and gives kExitInput, any other exception
- * prints its text and gives kExitInternal.
+ * "program: file: field: reason" and gives kExitInput, so does a file system's
+ * error with the path it names, and any other exception prints its text and
+ * gives kExitInternal.
  */
 int run_program(std::string_view program, const std::function<int()> &body);
 

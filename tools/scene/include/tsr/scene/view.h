@@ -15,6 +15,7 @@
 #ifndef TSR_SCENE_VIEW_H
 #define TSR_SCENE_VIEW_H
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -43,6 +44,10 @@ struct Truth {
 class View
 {
   public:
+    /* Octets that a view keeps for each of its pixels. */
+    static constexpr std::size_t kOctetsPerPixel =
+        sizeof(Eigen::Vector2f) + 4 * sizeof(Eigen::Vector3f) + 3 * sizeof(float) + 1;
+
     /* geometry is kept. */
     View(const Geometry &geometry, const Camera &camera);
 
