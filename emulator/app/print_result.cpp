@@ -18,11 +18,12 @@ constexpr double kLateToldS = 0.2; /* less is how exactly a machine sleeps and d
 
 void print_counts(const char *name, const nlohmann::ordered_json &counts)
 {
-    std::printf("%s: %d frames watched, %d woken, %d maps made, %d withheld, %d sent, %d received, %d lost\n", name,
-                counts.at("frames_watched").get<int>(), counts.at("frames_woken").get<int>(),
-                counts.at("maps_made").get<int>(), counts.at("maps_withheld").get<int>(),
-                counts.at("maps_sent").get<int>(), counts.at("maps_received").get<int>(),
-                counts.at("maps_lost").get<int>());
+    const auto count = [&](const char *key) { return counts.at(key).get<int>(); };
+    std::printf(
+        "%s: frames watched %d, woken %d; maps made %d, withheld %d, for zones alone %d, sent %d, given up %d; the "
+        "sink has %d\n",
+        name, count("frames_watched"), count("frames_woken"), count("maps_made"), count("maps_withheld"),
+        count("maps_measured"), count("maps_sent"), count("maps_lost"), count("maps_received"));
 }
 
 /* Of one figure of the maps that were compared with truth. */
@@ -30,7 +31,7 @@ Quantiles errors_of(const nlohmann::ordered_json &maps, const char *figure)
 {
     std::vector<double> values;
     for (const auto &map : maps) {
-        if (map.contains("error") && map.at("error").is_object() && map.at("error").at(figure).is_number()) {
+        if (map.at("error").is_object() && map.at("error").at(figure).is_number()) {
             values.push_back(map.at("error").at(figure).get<double>());
         }
     }

@@ -5,9 +5,11 @@
  */
 #include "run_site.h"
 
+#include <atomic>
 #include <chrono>
 #include <csignal>
-#include <cstdio>
+#include <cstdint>
+#include <ctime>
 #include <optional>
 #include <utility>
 
@@ -29,6 +31,25 @@ namespace
 namespace fs = std::filesystem;
 
 volatile std::sig_atomic_t signal_taken = 0;
+std::atomic<std::int64_t> taken_ms = 0;
+static_assert(std::atomic<std::int64_t>::is_always_lock_free, "a signal handler writes it");
+
+/* timeout(1) tells a program and then its group, so who is told again at once is told once. */
+constexpr std::int64_t kSameSignalMs = 1000;
+
+void note_signal(int number)
+{
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    const std::int64_t now_ms = std::int64_t{now.tv_sec} * 1000 + now.tv_nsec / 1'000'000;
+    if (signal_taken == 0) {
+        taken_ms = now_ms;
+        signal_taken = number;
+    } else if (now_ms - taken_ms >= kSameSignalMs) {
+        std::signal(number, SIG_DFL);
+        std::raise(number); /* taken when this returns */
+    }
+}
 
 /* To the end, or to a signal. */
 Lateness play(const Options &options, const std::string &label, Simulation &simulation)
@@ -58,8 +79,7 @@ void take_signals()
 {
     struct sigaction action {
     };
-    action.sa_handler = [](int number) { signal_taken = number; };
-    action.sa_flags = static_cast<int>(SA_RESETHAND); /* a second one ends the program at once */
+    action.sa_handler = note_signal;
     for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
         sigaction(number, &action, nullptr);
     }

@@ -30,8 +30,8 @@ struct RunOutcome {
     Lateness late;
 };
 
-/* From now on a signal asks for an end: the run then reports what it has, if its sink answers. A second one ends the
- * program. */
+/* From now on a signal asks for an end: the run then reports what it has, if its sink answers. Another one, a second
+ * later or more, ends the program. */
 void take_signals();
 /* The signal that asked; 0: none. */
 int stop_signal();

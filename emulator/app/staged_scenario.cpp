@@ -7,7 +7,6 @@
 #include "tsr/emulator/preflight.h"
 #include "tsr/emulator/scene_pictures.h"
 #include "tsr/emulator/sweep.h"
-#include "tsr/emulator/sweep.h"
 
 namespace tsr::app
 {

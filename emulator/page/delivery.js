@@ -98,7 +98,7 @@ function zoneFrames(size, zones) {
 
 function galleryFigure({pair, why, numbers, size, zones, ...pictures}) {
   const views = [["left", "left view"], ["right", "right view"], ["reference", "reference image"], ["map", "map"], ["truth", "truth"], ["error", "error"]].filter(([key]) => pictures[key]);
-  const {error} = numbers, judged = error ? `median error <b>${number(error.median_px, 2)} px</b>, ${error.median_mm === null ? "–" : short(error.median_mm)} mm; <b>${percent(error.correct)}</b> right; ` : "";
+  const {error} = numbers, judged = error ? `median error <b>${error.median_px === null ? "–" : `${number(error.median_px, 2)} px`}</b>, ${error.median_mm === null ? "–" : short(error.median_mm)} mm; <b>${percent(error.correct)}</b> right; ` : "";
   return `<figure><div class="views">${views.map(([key, words]) => `<div><div class="framed"><img src="${pictures[key]}" alt="${words} of ${escape(pair)}">${key === "right" ? "" : zoneFrames(size, zones)}</div>${words}</div>`).join("")}</div>` +
     `<figcaption><b>${escape(pair)}</b> at ${number(numbers.capture_time_s, 1)} s${why ? `, the <b>${why}</b>` : ""}: ${judged}` +
     `${number(numbers.map_bytes)} + ${number(numbers.reference_bytes)} bytes${numbers.kept ? "" : "; dropped by the sink"}</figcaption></figure>`;

@@ -8,7 +8,9 @@ const PARTS = [
   ["storage", "storage", ["storage_write", "storage_read", "storage_standby"]],
   ["leakage", "board", ["board_leakage"]],
 ];
-const mw = (node, [, , states]) => sum(states.map((state) => node[`energy_mj_${state}`])) / Math.max(summary.virtual_time_s, 1e-6);
+/* Of the time in which the node had power, as its battery's life is. */
+const mj = (node, [, , states]) => sum(states.map((state) => node[`energy_mj_${state}`]));
+const mw = (node, part) => node.energy_mj_total > 0 ? mj(node, part) / node.energy_mj_total * node.battery_mean_power_uw / 1000 : 0;
 const powerOf = (node, parts) => sum(parts.map((part) => mw(node, part)));
 
 /* A bar each. */
@@ -25,7 +27,7 @@ function powerBars(id, title, parts, sorted, withLife) {
       out.push(text(0, y + 14, node.name.length > fit ? node.name.slice(0, fit - 1) + "…" : node.name, {title: nodeTitle(node)}));
       for (const part of parts) {
         const value = mw(node, part);
-        out.push(rect(p.x(x), y + 3, p.x(x + value) - p.x(x), bar - 6, part[1], `${node.name}, ${part[0]}: ${short(value)} mW, ${short(value * summary.virtual_time_s)} mJ in all`));
+        out.push(rect(p.x(x), y + 3, p.x(x + value) - p.x(x), bar - 6, part[1], `${node.name}, ${part[0]}: ${short(value)} mW, ${short(mj(node, part))} mJ in all`));
         x += value;
       }
       if (withLife) out.push(text(width - 2, y + 14, days(node.battery_life_days), {anchor: "end"}));

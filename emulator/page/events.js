@@ -7,7 +7,7 @@ const pairName = (id) => nodeById.get(id)?.pair ?? nameOf(id);
 /* Reports as a line of steps with a point each, the truth of the same instants behind it. */
 function zoneChart(id, name, reports) {
   const depths = reports.flatMap((one) => [one.depth, one.truth]).filter((value) => value !== null);
-  const [low, high] = [Math.min(...depths), Math.max(...depths)], margin = (high - low || 0.1) * 0.1;
+  const [low, high] = [Math.min(...depths), Math.max(...depths)], margin = Math.max(high - low, 0.2) * 0.1;
   const truths = reports.filter((one) => one.truth !== null);
   chart(id, {
     label: `Reported depth of ${name} over time`,

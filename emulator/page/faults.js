@@ -1,5 +1,5 @@
 /* What went wrong on purpose: in words, as a table, and where it struck. */
-const ENDS_AT_ONCE = /^(reboot|sink restart)$/;
+const ENDS_AT_ONCE = /^(reboot|gateway restart|sink restart)$/;
 const faultPlace = (fault) => fault.other ? `${nameOf(fault.node)} – ${nameOf(fault.other)}` : fault.kind === "link loss" ? `${nameOf(fault.node)} – all` : fault.node ? nameOf(fault.node) : "";
 
 /* Nothing: it ended at once, or never came to an end. */
@@ -12,9 +12,9 @@ function faultDetails(fault) {
 
 /* Each by name while they are few. */
 function faultsInWords() {
-  const faults = summary.faults, kinds = [...new Set(faults.map((fault) => fault.kind))];
+  const faults = summary.faults;
   const named = faults.map((fault) => fault.kind + (faultPlace(fault) && ` of ${faultPlace(fault)}`) + ` at ${number(fault.at_s, 1)} s`);
-  const counted = kinds.map((kind) => `${kind}: ${number(faults.filter((fault) => fault.kind === kind).length)}`);
+  const counted = Object.entries(DATA.faults_by_kind).map(([kind, times]) => `${kind}: ${number(times)}`);
   return `${count(DATA.faults_of, "fault")}: ${faults.length <= 8 ? named.join(", ") : counted.join(", ")}.`;
 }
 

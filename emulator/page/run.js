@@ -20,7 +20,7 @@ function showHead() {
   const planned = summary.virtual_time_s < DATA.played_s ? ` of ${number(DATA.played_s, 1)} s` : ", before all that was under way had ended";
   if (summary.stopped) notices.push(`A part of a run: stopped by a signal after ${number(summary.virtual_time_s, 1)} s${planned}. The results are those of the time until then.`);
   else if (!summary.settled) notices.push("Something was still under way when the run ended.");
-  const restarts = summary.faults.filter((fault) => fault.kind === "sink restart").length;
+  const restarts = DATA.faults_by_kind["sink restart"] ?? 0;
   if (summary.sink_restarts > restarts) notices.push(`The sink was started again ${count(summary.sink_restarts, "time")}.`);
   if (summary.faults.length > 0) notices.push(faultsInWords());
   const stuck = summary.zones.filter((zone) => zone.always_begun);
@@ -38,14 +38,15 @@ function showTiles() {
   const tiles = [
     [number(DATA.nodes.of), `${DATA.nodes.of === 1 ? "node" : "nodes"}, ${count(Math.round(pairs), "pair")}, up to ${count(deepest, "hop")} to the gateway`],
     [`${number(summary.virtual_time_s, 1)} s`, `of virtual time in ${number(summary.wall_time_s, 1)} s, ${short(summary.virtual_time_s / Math.max(summary.wall_time_s, 1e-3))} × real time`],
-    [`${number(totals.maps_received)} <small>/ ${number(totals.maps_lost)} lost</small>`,
+    [`${number(totals.maps_received)} <small>/ ${number(totals.maps_lost)} given up</small>`,
       `changes delivered; ${number(totals.frames_woken)} of ${number(totals.frames_watched)} frames woke, ${number(totals.maps_withheld)} maps were like the last` +
+      (totals.maps_measured > 0 ? `, ${number(totals.maps_measured)} were for zones alone` : "") +
       (totals.captures_failed > 0 ? `, ${count(totals.captures_failed, "capture")} failed` : "")],
     [latency.count > 0 ? time(latency.median) : "–", latency.count > 0 ? `median latency from capture to commit; 95 % within ${time(latency.p95)}` : "latency: nothing was delivered"],
     [bytes(totals.air_bytes), `on air in ${count(totals.air_frames, "frame")}${perMap}`],
     [errorPx.count > 0 ? `${number(errorPx.median, 2)} px` : "–", errorPx.count > 0 ?
       `median error of ${count(errorPx.count, "map")}, ${errorMm.count > 0 ? short(errorMm.median) : "–"} mm; ${number(100 * totals.correct_median)} % of the pixels right within 1 px` : "error: no map was compared with ground truth"],
-    [`${short(totals.energy_mj / 1000)} J`, `by all nodes, ${short(totals.energy_mj / Math.max(summary.virtual_time_s, 1e-6) / DATA.nodes.of)} mW each on average` +
+    [`${short(totals.energy_mj / 1000)} J`, `by all nodes, ${short(sum(nodes.map((node) => node.battery_mean_power_uw)) / nodes.length / 1000)} mW each on average while on` +
       (totals.active_mj_per_map > 0 ? `; ${short(totals.active_mj_per_map)} mJ of work and frames for each map delivered` : "")],
     [unended ? "no end" : `${number(totals.shortest_life_days, totals.shortest_life_days < 10 ? 1 : 0)} <small>days</small>`,
       `of battery, the shortest: ${escape(nameOf(totals.shortest_life_node))}; median ${days(totals.median_life_days)}`],

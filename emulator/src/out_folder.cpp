@@ -78,8 +78,7 @@ void OutFolder::refuse_foreign() const
     for (const char *name : names) {
         if (std::filesystem::exists(file(name), ignored)) {
             throw InputError(folder_.string(), "--out",
-                             std::string("holds a ") + name +
-                                 " that no run of the emulator made; choose another folder");
+                             std::string("holds ") + name + " that no run of the emulator made; choose another folder");
         }
     }
 }
@@ -117,17 +116,39 @@ void OutFolder::clear() const
     }
 }
 
+bool OutFolder::is_there(const std::filesystem::path &path)
+{
+    std::error_code ignored;
+    return std::filesystem::exists(std::filesystem::symlink_status(path, ignored));
+}
+
 void OutFolder::move_results(const std::filesystem::path &from, const std::filesystem::path &to)
 {
     for (const char *name : kNames) {
         std::error_code error;
-        if (std::filesystem::exists(std::filesystem::symlink_status(from / name, error))) {
+        if (is_there(from / name)) {
             std::filesystem::rename(from / name, to / name, error);
-            if (error) {
-                throw InputError((from / name).string(), "rename", error.message());
-            }
+        }
+        if (error) {
+            throw InputError((from / name).string(), "rename", error.message());
         }
     }
+}
+
+/* Those that were moved out of the way; what has its name again is another one. */
+void OutFolder::bring_back() const
+{
+    const auto replaced = file(kReplaced);
+    std::error_code error;
+    for (const char *name : kNames) {
+        if (is_there(replaced / name) && !is_there(file(name))) {
+            std::filesystem::rename(replaced / name, file(name), error);
+        }
+        if (error) {
+            throw InputError((replaced / name).string(), "rename", error.message());
+        }
+    }
+    std::filesystem::remove_all(replaced, error);
 }
 
 /* What lies in "replaced" and "placing" tells how far it has come: recover() goes on from there. */
@@ -143,8 +164,7 @@ void OutFolder::replace() const
         move_results(folder_, replaced);
         std::filesystem::rename(unfinished(), file(kPlacing));
     } catch (const std::exception &failure) {
-        move_results(replaced, folder_);
-        std::filesystem::remove(replaced, error);
+        bring_back();
         throw InputError(folder_.string(), "results",
                          std::string("could not be replaced: ") + failure.what() + "; the new ones are in " +
                              unfinished().string());
@@ -163,11 +183,11 @@ void OutFolder::place() const
 void OutFolder::recover() const
 {
     std::error_code error;
-    if (std::filesystem::exists(file(kPlacing), error)) {
+    if (is_there(file(kPlacing))) {
         place();
-    } else if (std::filesystem::exists(file(kReplaced), error)) {
-        if (std::filesystem::exists(unfinished(), error)) {
-            move_results(file(kReplaced), folder_);
+    } else if (is_there(file(kReplaced))) {
+        if (is_there(unfinished())) {
+            bring_back();
         }
         std::filesystem::remove_all(file(kReplaced), error);
     }

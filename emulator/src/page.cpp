@@ -13,7 +13,7 @@
  *   events    [[s, what], ...] that the scene tells
  *   zone_events  {of, rows: [[s, node, zone, kind, depth m, area %, latency s, true depth m], ...], newest}: oldest
  *             first; newest: the last ones, of all
- *   faults_of how many came: summary.faults is thinned
+ *   faults_of, faults_by_kind  how many came, also by their kind: summary.faults is thinned
  *   gallery   [{pair, why, numbers, size, zones, left, right, reference, map, truth, error}, ...]: numbers as in
  *             summary.json; size [width, height] and zones [[name, x, y, width, height], ...] of the left picture, px;
  *             data URLs or "", left and right are a baseline's
@@ -240,6 +240,16 @@ double last_pair_share(const Site &site)
     return static_cast<double>(site.pairs.back().width) * site.pairs.back().height / all;
 }
 
+Json faults_by_kind(const Json &faults)
+{
+    Json counts = Json::object();
+    for (const Json &fault : faults) {
+        Json &count = counts[fault.at("kind").get<std::string>()];
+        count = count.is_null() ? 1 : count.get<int>() + 1;
+    }
+    return counts;
+}
+
 Json summary_head(Json summary)
 {
     for (const char *key : {"nodes", "pairs", "links", "events"}) {
@@ -271,6 +281,7 @@ void write_page(const std::filesystem::path &out, const Json &summary, const Run
                     {"events", events_json(run)},
                     {"zone_events", zone_events_json(run)},
                     {"faults_of", summary.at("faults").size()},
+                    {"faults_by_kind", faults_by_kind(summary.at("faults"))},
                     {"gallery", gallery_json(out, gallery)},
                     {"gallery_of", gallery.size()},
                     {"cloud", cloud_json(out / "cloud.ply")},

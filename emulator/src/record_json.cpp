@@ -59,10 +59,10 @@ Json error_json(const MapError &error)
     return {{"truth_pixels", error.truth_pixels},
             {"matched_pixels", error.matched_pixels},
             {"correct", rounded(error.correct, 4)},
-            {"bad_half", rounded(error.bad_half, 4)},
-            {"bad_1", rounded(error.bad_1, 4)},
-            {"median_px", rounded(error.median_px, 4)},
-            {"mean_px", rounded(error.mean_px, 4)},
+            {"bad_half", rounded_or_null(error.bad_half, 4)},
+            {"bad_1", rounded_or_null(error.bad_1, 4)},
+            {"median_px", rounded_or_null(error.median_px, 4)},
+            {"mean_px", rounded_or_null(error.mean_px, 4)},
             {"median_mm", rounded_or_null(error.median_mm, 2)},
             {"median_depth_percent", rounded_or_null(error.median_depth_percent, 3)}};
 }

@@ -207,7 +207,9 @@ void digest_maps(RunDigest &digest, const std::vector<ReceivedMap> &maps)
             latency.push_back(*latency_s);
         }
         if (map.error) {
-            error_px.push_back(map.error->median_px);
+            if (map.error->median_px) {
+                error_px.push_back(*map.error->median_px);
+            }
             if (map.error->median_mm) {
                 error_mm.push_back(*map.error->median_mm);
             }

@@ -85,8 +85,10 @@ void add_errors(const Json &summary, Json &figures)
     for (const Json &pair : summary.at("pairs")) {
         for (const Json &map : pair.at("maps")) {
             if (const Json &error = map.at("error"); !error.is_null()) {
-                ++maps;
-                sum_px += error.at("mean_px").get<double>();
+                if (const Json &mean_px = error.at("mean_px"); !mean_px.is_null()) {
+                    ++maps;
+                    sum_px += mean_px.get<double>();
+                }
                 truth_pixels += error.at("truth_pixels").get<std::size_t>();
                 matched_pixels += error.at("matched_pixels").get<std::size_t>();
             }

@@ -67,11 +67,14 @@ std::optional<MapError> compare_with_truth(const FloatImage &map, const FloatIma
             errors_percent.push_back(100 * error_mm / true_mm);
         }
     }
-    if (errors_px.empty()) {
+    if (error.truth_pixels == 0) {
         return std::nullopt;
     }
     error.matched_pixels = errors_px.size();
     error.correct = share(within_one, error.truth_pixels);
+    if (errors_px.empty()) {
+        return error;
+    }
     error.bad_half = 1 - share(within_half, error.matched_pixels);
     error.bad_1 = 1 - share(within_one, error.matched_pixels);
     error.mean_px = sum_px / static_cast<double>(error.matched_pixels);

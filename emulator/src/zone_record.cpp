@@ -12,21 +12,23 @@ namespace tsr
 namespace
 {
 
-/* The first capture of each camera that the sink has anything of. */
-std::map<std::uint16_t, std::uint64_t> first_looks(const RunRecord &run)
+/* From the first waking of each camera to its rest. */
+std::map<std::uint16_t, Episode> first_looks(const RunRecord &run)
 {
-    std::map<std::uint16_t, std::uint64_t> firsts;
-    const auto note = [&](std::uint16_t node, std::uint64_t time_us) {
-        const auto [first, is_new] = firsts.try_emplace(node, time_us);
-        first->second = std::min(first->second, time_us);
-    };
-    for (const ReceivedMap &map : run.maps) {
-        note(map.node, map.capture_time_us);
-    }
-    for (const ReceivedEvent &event : run.zone_events) {
-        note(event.node, event.capture_time_us);
+    std::map<std::uint16_t, Episode> firsts;
+    for (const Episode &episode : run.episodes) {
+        const auto [first, is_new] = firsts.try_emplace(episode.node, episode);
+        if (episode.from_us < first->second.from_us) {
+            first->second = episode;
+        }
     }
     return firsts;
+}
+
+bool is_within(const ReceivedEvent &event, const std::map<std::uint16_t, Episode> &looks)
+{
+    const auto look = looks.find(event.node);
+    return look != looks.end() && event.capture_time_us <= look->second.until_us;
 }
 
 struct Told {
@@ -44,7 +46,7 @@ std::vector<ZoneRecord> zone_records(const RunRecord &run)
     for (const ReceivedEvent &event : run.zone_events) {
         Told &zone = told[{event.node, event.zone}];
         ++zone.events;
-        zone.began_first |= event.kind == "begun" && event.capture_time_us == firsts.at(event.node);
+        zone.began_first |= event.kind == "begun" && is_within(event, firsts);
         zone.ended |= event.kind != "begun";
     }
     std::vector<ZoneRecord> records;

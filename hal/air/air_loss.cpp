@@ -49,8 +49,8 @@ LossCause Air::cause_on_link(const Transmission &transmission, std::size_t place
                : right_at(level_q4 + fault_q4)        ? LossCause::link_fault
                                                       : LossCause::noise;
     }
-    if (receivers_[link.radio].overtaken(transmission.number)) {
-        return LossCause::collision;
+    if (!receivers_[link.radio].was_deaf_since(transmission.start_us)) {
+        return LossCause::collision; /* a stronger frame took the receiver over */
     }
     return radio.receiving ? LossCause::half_duplex : LossCause::not_listening;
 }

@@ -45,6 +45,7 @@ void Receiver::add(int level_q4)
 void Receiver::tune(std::uint8_t channel, std::span<const int> levels_q4, std::uint64_t now_us)
 {
     locked_ = false;
+    heard_since_us_ = now_us;
     channel_ = channel;
     energy_ = interference_ = 0;
     for (const int level_q4 : levels_q4) {
@@ -56,6 +57,7 @@ void Receiver::tune(std::uint8_t channel, std::span<const int> levels_q4, std::u
 void Receiver::listen(bool on, std::uint64_t now_us)
 {
     locked_ = locked_ && on;
+    heard_since_us_ = listening_ && on ? heard_since_us_ : now_us;
     listening_ = on;
     sense(now_us);
 }
@@ -98,7 +100,6 @@ Reception Receiver::begin(const Signal &signal)
     settle(signal.start_us);
     const Reception reception = reception_of(signal);
     if (reception == Reception::followed) {
-        overtaken_ = locked_ ? followed_.number : overtaken_;
         locked_ = wanted_ = true;
         followed_ = signal;
         success_q32_ = kCertainQ32;

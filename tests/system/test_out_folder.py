@@ -1,6 +1,7 @@
 """Whatever ends a run early, the results of the run before stay; complete ones replace them all, and nothing else is left."""
 # SPDX-License-Identifier: Apache-2.0
 import hashlib
+import json
 import os
 import pathlib
 import shutil
@@ -14,6 +15,15 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from run_site import BUILD, check, child_named, emulate, make_scene, start_emulator
 
 EMULATOR = BUILD / "bin/tarsier-emulator"
+SCENARIO = """name = "tank"
+duration_s = 10
+[scene]
+kind = "tank"
+[pairs]
+count = 1
+width = 64
+height = 48
+"""
 
 
 def contents(out):
@@ -57,18 +67,37 @@ def refusals(folder, site, out):
 
 
 def names(folder, site):
-    """Folders of any name."""
+    """Folders and files of any name."""
     emulate(site, folder / ("d" * 100) / ("e" * 100))
     run = subprocess.run([EMULATOR, site, "--out=-rel", "--quiet"], cwd=folder, capture_output=True, text=True)
     check(run.returncode == 0 and (folder / "-rel/summary.json").exists(), f"--out=-rel: {run.stderr}")
     odd = os.fsencode(folder) + b"/sc\xffne"
-    os.rename(site.parent, odd)
-    try:
-        run = subprocess.run([EMULATOR, odd + b"/site.toml", "--out", os.fsencode(folder) + b"/o\xfft", "--quiet"],
-                             capture_output=True)
-        check(run.returncode in (0, 2), f"names that are no UTF-8: {run.returncode}: {run.stderr!r}")
-    finally:
-        os.rename(odd, site.parent)
+    shutil.copytree(os.fsencode(site.parent), odd)
+    scenario = os.fsencode(folder) + b"/s\xff.toml"
+    with open(scenario, "w", encoding="utf-8") as file:
+        file.write(SCENARIO)
+    # What frames' folders are called stands in OUT/site.toml, and TOML is UTF-8.
+    for out, path, status in ((b"/o\xff1", odd + b"/site.toml", 2), (b"/o\xff2", scenario, 0)):
+        run = subprocess.run([EMULATOR, path, "--out", os.fsencode(folder) + out, "--quiet"], capture_output=True)
+        check(run.returncode == status, f"{path}: {run.returncode}: {run.stderr!r}")
+    summary = json.loads(pathlib.Path(os.fsdecode(os.fsencode(folder) + b"/o\xff2/summary.json")).read_text("utf-8"))
+    check(summary["settings"]["scenario"] == "s\ufffd.toml", f"{summary['settings']}")
+
+
+def scenarios(folder):
+    """What a run or a sweep reads is not among what it replaces."""
+    scenario, out, words = folder / "tank.toml", folder / "swept", ["--sweep", "seed=1,2"]
+    scenario.write_text(SCENARIO)
+    subprocess.run([EMULATOR, scenario, "--out", out, "--quiet", *words], check=True, stdout=subprocess.DEVNULL)
+    refused("a run's own scenario in a sweep", out, out / "runs/1/scenario.toml", says="is among the results")
+    refused("a sweep of one of its scenarios", out, out / "runs/1/scenario.toml", *words, says="is among the results")
+    crowd = folder / "crowd.toml"
+    crowd.write_text('name = "crowd"\nduration_s = 10\n[recorded]\nsite = "played/site.toml"\n[pairs]\ncount = 2\n')
+    subprocess.run([BUILD / "bin/tarsier", "render", scenario, "--out", folder / "frames"], check=True, stdout=subprocess.DEVNULL)
+    played = folder / "played"
+    emulate(folder / "frames/site.toml", played)
+    for more in ([], words):
+        refused(f"a crowd of results {more}", played, crowd, *more, says="is among the results")
 
 
 def wait_for(what, condition):
@@ -81,7 +110,11 @@ def wait_for(what, condition):
 
 
 def gone(pid):
-    return not pathlib.Path(f"/proc/{pid}").exists()
+    """Also one that nobody has asked for its status."""
+    try:
+        return pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
+    except OSError:
+        return True
 
 
 def killed(folder, site, out):
@@ -99,16 +132,21 @@ def killed(folder, site, out):
     check(not left, f"left behind: {left}")
 
 
-def orphan_holds_the_folder(folder, site, out):
-    """A sink that outlives its emulator still writes: nobody else may."""
-    stays = script(folder, "stays", f"{BUILD}/bin/tarsier-sink \"$@\"; sleep 2")
-    emulator = start_emulator(site, out, "--speed", "1", "--sink", stays)
-    wait_for("the sink's log", lambda: (out / "unfinished/sink.log").exists() and
-             "listening" in (out / "unfinished/sink.log").read_text())
-    emulator.kill()
-    emulator.wait()
-    refused("an orphan", out, site, says="another run writes there")
-    time.sleep(2.5)
+def orphans_hold_the_folder(folder, site, out):
+    """A sink that outlives its emulator may still write: nobody else may, in a sweep's folder either."""
+    scenario = folder / "tank.toml"
+    for what, path, words, log in (("an orphan", site, [], "unfinished/sink.log"),
+                                   ("an orphan of a sweep", scenario, ["--sweep", "seed=1,2"], "runs/1/unfinished/sink.log")):
+        target, go_on = out if path == site else folder / "swept", folder / f"go on {what}"
+        stays = script(folder, "stays", f"{BUILD}/bin/tarsier-sink \"$@\"\nwhile [ ! -e '{go_on}' ]; do sleep 0.05; done")
+        emulator = start_emulator(path, target, "--speed", "1", "--sink", stays, *words)
+        wait_for("the sink", lambda: (target / log).exists() and "listening" in (target / log).read_text())
+        emulator.kill()
+        emulator.wait()
+        refused(what, target, path, *words, says="another run writes there")
+        go_on.touch()
+        wait_for("the orphan's end", lambda: subprocess.run([EMULATOR, path, "--out", target, "--quiet", *words],
+                                                            capture_output=True).returncode == 0)
 
 
 def signals(folder, site, out):
@@ -126,7 +164,9 @@ def signals(folder, site, out):
     emulator = start_emulator(site, out, "--sink", silent)
     sink = wait_for("the sink", lambda: child_named(emulator.pid, "sleep"))
     emulator.send_signal(signal.SIGINT)
-    time.sleep(0.3)
+    emulator.send_signal(signal.SIGINT)
+    time.sleep(1.3)
+    check(emulator.poll() is None, "the same signal again, at once, ended the program")
     emulator.send_signal(signal.SIGINT)
     check(emulator.wait(timeout=3) == -signal.SIGINT, f"a second Ctrl-C: {emulator.returncode}")
     os.kill(sink, signal.SIGKILL)
@@ -139,6 +179,7 @@ with tempfile.TemporaryDirectory() as folder:
     emulate(site, out)
     refusals(folder, site, out)
     names(folder, site)
+    scenarios(folder)
     killed(folder, site, out)
-    orphan_holds_the_folder(folder, site, out)
+    orphans_hold_the_folder(folder, site, out)
     signals(folder, site, out)

@@ -148,7 +148,7 @@ def check_refusals(folder, scenario):
     foreign = folder / "foreign"
     (foreign / "runs").mkdir(parents=True)
     result = run(scenario, foreign, "--sweep", "seed=1")
-    check(result.returncode == 2 and "holds a runs" in result.stderr, result.stderr)
+    check(result.returncode == 2 and "holds runs" in result.stderr, result.stderr)
 
 
 def check_signal(folder, scenario):

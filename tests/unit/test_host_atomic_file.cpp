@@ -76,13 +76,24 @@ TEST_F(AtomicFileTest, ASecondWriterWaitsForTheFirst)
     EXPECT_FALSE(fs::exists(temporary));
 }
 
-TEST_F(AtomicFileTest, WritesThroughNoLink)
+TEST_F(AtomicFileTest, SparesWhatHasTheNameAndIsNotItsOwn)
 {
     const fs::path other = folder.put("other", "somebody's");
     fs::create_symlink(other, temporary);
-    EXPECT_REFUSED(write("x"), "a.txt: create");
-    EXPECT_EQ(read_text_file(other), "somebody's");
+    write("beside a link");
     EXPECT_TRUE(fs::is_symlink(temporary));
+    fs::remove(temporary);
+    fs::create_hard_link(other, temporary);
+    write("beside a second name");
+    EXPECT_TRUE(fs::exists(temporary));
+    EXPECT_EQ(read_text_file(other), "somebody's");
+    EXPECT_EQ(read_text_file(target), "beside a second name");
+    EXPECT_EQ(std::distance(fs::directory_iterator(target.parent_path()), fs::directory_iterator()), 3);
+}
+
+TEST_F(AtomicFileTest, AFolderThatIsNotThereIsRefusedByName)
+{
+    EXPECT_REFUSED(write_file_atomically(folder / "no/a.txt", "x"), "no/a.txt: create: No such file");
 }
 
 } // namespace

@@ -74,7 +74,10 @@ TEST_F(ScenarioFile, FindsItsRecordingFromAnotherFolder)
 
 TEST(Settings, AreToldWithoutFolders)
 {
-    EXPECT_EQ(tsr::without_folders("recorded.site='/a/b/site.toml'"), "recorded.site='site.toml'");
+    EXPECT_EQ(tsr::without_folders("recorded.site='/a/b/site.toml'"), "recorded.site = 'site.toml'");
+    EXPECT_EQ(tsr::without_folders("recorded.site = '/a//x.toml'"), "recorded.site = 'x.toml'");
+    EXPECT_EQ(tsr::without_folders("recorded.site = '/x.toml'"), "recorded.site = 'x.toml'");
+    EXPECT_EQ(tsr::without_folders("recorded.site = \"/\\u0061/x.toml\""), "recorded.site = 'x.toml'");
     EXPECT_EQ(tsr::without_folders("recorded.site='b/site.toml'"), "recorded.site='b/site.toml'");
     EXPECT_EQ(tsr::without_folders("pairs.count = 3"), "pairs.count = 3");
 }

@@ -37,27 +37,38 @@ TEST(Truth, OnlyPixelsWithBothAreMeasured)
     EXPECT_EQ(error->truth_pixels, 4u);
     EXPECT_EQ(error->matched_pixels, 3u);
     EXPECT_DOUBLE_EQ(error->correct, 0.5);
-    EXPECT_DOUBLE_EQ(error->bad_half, 2.0 / 3);
-    EXPECT_DOUBLE_EQ(error->bad_1, 1 - 2.0 / 3);
-    EXPECT_DOUBLE_EQ(error->median_px, 0.75);
-    EXPECT_DOUBLE_EQ(error->mean_px, 10.75 / 3);
+    EXPECT_DOUBLE_EQ(error->bad_half.value(), 2.0 / 3);
+    EXPECT_DOUBLE_EQ(error->bad_1.value(), 1 - 2.0 / 3);
+    EXPECT_DOUBLE_EQ(error->median_px.value(), 0.75);
+    EXPECT_DOUBLE_EQ(error->mean_px.value(), 10.75 / 3);
     ASSERT_TRUE(error->median_mm);
     EXPECT_NEAR(*error->median_mm, 6000 / 12.0 - 6000 / 12.75, 1e-9);
     EXPECT_NEAR(*error->median_depth_percent, 100 * 0.75 / 12, 1e-9);
 }
 
-TEST(Truth, NothingToCompareIsNoError)
+TEST(Truth, WithoutTruthThereIsNoError)
 {
-    EXPECT_FALSE(compare({kNone, kNone}, {3, 4})) << "no match";
-    EXPECT_FALSE(compare({3, 4}, {kNone, kNone})) << "no truth";
-    EXPECT_FALSE(compare({3, kNone}, {kNone, 4})) << "never both";
+    EXPECT_FALSE(compare({3, 4}, {kNone, kNone}));
+}
+
+/* It has nothing right, and no error either. */
+TEST(Truth, AMapWithoutAMatchHasNothingCorrect)
+{
+    for (const auto &map : {std::vector<float>{kNone, kNone}, {3, kNone}}) {
+        const auto error = compare(map, {kNone, 4});
+        ASSERT_TRUE(error);
+        EXPECT_EQ(error->truth_pixels, 1u);
+        EXPECT_EQ(error->matched_pixels, 0u);
+        EXPECT_DOUBLE_EQ(error->correct, 0);
+        EXPECT_FALSE(error->median_px || error->mean_px || error->bad_half || error->bad_1 || error->median_mm);
+    }
 }
 
 TEST(Truth, WithoutADepthThereIsNoErrorOfDepth)
 {
     const auto error = compare({1, 2}, {0, 0});
     ASSERT_TRUE(error);
-    EXPECT_DOUBLE_EQ(error->median_px, 1);
+    EXPECT_DOUBLE_EQ(error->median_px.value(), 1);
     EXPECT_FALSE(error->median_mm) << "the truth is infinitely far";
     EXPECT_FALSE(error->median_depth_percent);
     EXPECT_FALSE(compare({1, 2}, {1, 2}, -3)->median_mm) << "d + d0 is below 0";

@@ -32,12 +32,9 @@ class ZoneRecords : public testing::Test
         run.zone_events.push_back(event);
     }
 
-    void map_at(std::uint64_t time_us)
+    void look(std::uint64_t from_us, std::uint64_t until_us)
     {
-        ReceivedMap map;
-        map.node = pair.lead;
-        map.capture_time_us = time_us;
-        run.maps.push_back(map);
+        run.episodes.push_back({pair.lead, from_us, until_us, Fate::committed});
     }
 
     ZoneRecord door() const { return zone_records(run).at(0); }
@@ -61,7 +58,8 @@ TEST_F(ZoneRecords, AreOfEveryZoneWithItsEvents)
 
 TEST_F(ZoneRecords, ABeginningWithTheFirstLookAndNoEndIsFound)
 {
-    map_at(5);
+    look(50, 70);
+    look(2, 9);
     told("door", "begun", 5);
     EXPECT_TRUE(door().always_begun);
     told("door", "begun", 90); /* the node started again */
@@ -72,13 +70,15 @@ TEST_F(ZoneRecords, ABeginningWithTheFirstLookAndNoEndIsFound)
 
 TEST_F(ZoneRecords, SomebodyWhoStaysIsNot)
 {
-    map_at(5);
+    look(2, 9); /* whose map and events were lost */
+    look(38, 45);
     told("door", "begun", 40);
     EXPECT_FALSE(door().always_begun);
 }
 
 TEST_F(ZoneRecords, ASurfaceThatIsFollowedIsNot)
 {
+    look(2, 9);
     told("door", "measured", 5);
     EXPECT_FALSE(door().always_begun);
 }

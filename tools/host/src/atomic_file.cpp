@@ -15,10 +15,22 @@
 namespace tsr
 {
 
+namespace
+{
+
+constexpr int kTriesMax = 100; /* writers of one file that wait for each other */
+
+} // namespace
+
 AtomicFile::AtomicFile(const std::filesystem::path &target, unsigned mode)
     : target_(target), name_(target.parent_path() / ("." + target.filename().string() + ".new"))
 {
-    while (!open_alone()) {
+    bool opened = false;
+    for (int tries = 0; !opened && tries < kTriesMax; ++tries) {
+        opened = open_locked();
+    }
+    if (!opened) {
+        open_unique();
     }
     if (::ftruncate(descriptor_, 0) != 0) { /* of a writer that was killed */
         fail("create");
@@ -28,27 +40,42 @@ AtomicFile::AtomicFile(const std::filesystem::path &target, unsigned mode)
     }
 }
 
-/* The lock is of the file, and the name may have gone to another while it was waited for. */
-bool AtomicFile::open_alone()
+/* The lock is of the file, and the name may have gone to another while it was waited for. Only a plain file of ours is
+ * one that an earlier writer left. */
+bool AtomicFile::open_locked()
 {
     descriptor_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600);
     if (descriptor_ < 0) {
-        name_.clear(); /* somebody's own, perhaps */
-        fail("create");
+        return false;
     }
-    while (::flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) { /* another error: a file system without locks */
+    int locked = ::flock(descriptor_, LOCK_EX);
+    while (locked != 0 && errno == EINTR) {
+        locked = ::flock(descriptor_, LOCK_EX);
     }
     struct stat opened {
     };
     struct stat named {
     };
-    if (::fstat(descriptor_, &opened) == 0 && ::lstat(name_.c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
-        opened.st_ino == named.st_ino) {
-        return true;
+    const bool ours = locked == 0 && ::fstat(descriptor_, &opened) == 0 && ::lstat(name_.c_str(), &named) == 0 &&
+                      opened.st_dev == named.st_dev && opened.st_ino == named.st_ino && S_ISREG(opened.st_mode) &&
+                      opened.st_nlink == 1 && opened.st_uid == ::geteuid();
+    if (!ours) {
+        ::close(descriptor_);
+        descriptor_ = -1;
     }
-    ::close(descriptor_);
-    descriptor_ = -1;
-    return false;
+    return ours;
+}
+
+/* Where there are no locks, or something else has the name. */
+void AtomicFile::open_unique()
+{
+    std::string pattern = name_.string() + ".XXXXXX";
+    name_.clear();
+    descriptor_ = ::mkostemp(pattern.data(), O_CLOEXEC);
+    if (descriptor_ < 0) {
+        fail("create");
+    }
+    name_ = pattern;
 }
 
 void AtomicFile::write(std::span<const std::uint8_t> bytes)

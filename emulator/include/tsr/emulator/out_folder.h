@@ -41,7 +41,9 @@ class OutFolder
   private:
     void refuse_foreign() const;
     void recover() const;
+    void bring_back() const;
     void place() const;
+    static bool is_there(const std::filesystem::path &path);
     static void move_results(const std::filesystem::path &from, const std::filesystem::path &to);
 
     std::filesystem::path folder_;

@@ -20,7 +20,7 @@ double rounded(double value, int digits);
 
 nlohmann::ordered_json json_of(const NodeRecord &node);
 nlohmann::ordered_json json_of(const LinkRecord &link);
-/* error is there only if the map was compared. */
+/* error is null if the map was not compared. */
 nlohmann::ordered_json json_of(const ReceivedMap &map);
 nlohmann::ordered_json json_of(const ReceivedEvent &event);
 nlohmann::ordered_json json_of(const ZoneRecord &record);

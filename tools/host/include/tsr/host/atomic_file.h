@@ -2,8 +2,9 @@
  * Files that appear complete or not at all: the bytes go to .NAME.new in the
  * same folder, reach the disk (fsync), and take the final name by rename(2). An
  * existing file stays whole until that instant. .NAME.new is locked (flock(2)),
- * so a second writer waits for the first, and one that was killed leaves nothing
- * that the next does not take over.
+ * so a second writer waits for the first (one thread must not have two of one
+ * target), and one that was killed leaves nothing that the next does not take
+ * over. Where that name cannot be locked or is somebody's own, another is made.
  *
  * SPDX-License-Identifier: Apache-2.0
  */
@@ -33,7 +34,8 @@ class AtomicFile
     void complete();
 
   private:
-    bool open_alone();
+    bool open_locked();
+    void open_unique();
     void discard();
     [[noreturn]] void fail(const char *step);
 

@@ -32,7 +32,7 @@ inline constexpr std::size_t kLossCauses = 7; /* none among them */
 inline constexpr std::array<const char *, kLossCauses> kLossNames = {
     "none", "collision", "noise", "receiver_busy", "half_duplex", "not_listening", "link_fault"};
 
-/* Frames by their cause; none stays 0. */
+/* Frames by their cause; none: of broadcasts, which are for no one radio. */
 using LossTally = std::array<std::uint64_t, kLossCauses>;
 
 } // namespace tsr::air

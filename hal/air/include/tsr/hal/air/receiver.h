@@ -91,8 +91,8 @@ class Receiver
     void fade(int level_q4, std::uint8_t channel, std::uint64_t now_us);
     /* It ends, having faded. */
     Outcome end(std::uint64_t number);
-    /* A stronger frame took the receiver over from this one, and it was the last that lost it so. */
-    bool overtaken(std::uint64_t number) const { return overtaken_ == number; }
+    /* It has been deaf, or on another channel, at start_us or later. */
+    bool was_deaf_since(std::uint64_t start_us) const { return !listening_ || heard_since_us_ > start_us; }
 
     /* Between these the channel was clear if neither energy nor a frame was found (CCA mode 3 with OR,
      * IEEE 802.15.4-2006, 6.9.9: energy alone, its mode 1, decides where no preamble was heard). */
@@ -115,8 +115,8 @@ class Receiver
     bool sensing_ = false;
     bool found_ = false; /* by the CCA under way */
     Signal followed_;
-    std::uint64_t overtaken_ = UINT64_MAX;
-    std::uint64_t settled_us_ = 0; /* success_q32_ holds for the frame until then */
+    std::uint64_t heard_since_us_ = 0; /* listening on this channel without a break */
+    std::uint64_t settled_us_ = 0;     /* success_q32_ holds for the frame until then */
     std::uint64_t success_q32_ = 0;
 };
 
