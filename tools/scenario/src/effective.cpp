@@ -1,9 +1,9 @@
 /* A scenario with its settings, as TOML. SPDX-License-Identifier: Apache-2.0 */
 #include "tsr/scenario/effective.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
-#include <regex>
 #include <sstream>
 
 #include "tsr/host/toml_fields.h"
@@ -33,17 +33,27 @@ std::string shortest(const std::string &number)
     return shorter.size() < number.size() && shorter.find_first_of(".e") != std::string::npos ? shorter : number;
 }
 
+/* As long as toml++ prints them that are not round. */
+bool has_long_fraction(const std::string &word)
+{
+    constexpr std::size_t kLong = 14;
+    const std::size_t point = word.find('.');
+    return point != std::string::npos &&
+           std::min(word.find_first_not_of("0123456789", point + 1), word.size()) > point + kLong;
+}
+
 std::string with_short_numbers_in(const std::string &line)
 {
-    static const std::regex kLong("[0-9]+\\.[0-9]{14,}(e[-+]?[0-9]+)?");
+    constexpr const char *kOfNumbers = "0123456789.e+-";
     std::string result;
-    auto rest = line.cbegin();
-    for (std::sregex_iterator found(line.begin(), line.end(), kLong), none; found != none; ++found) {
-        result.append(rest, (*found)[0].first);
-        result += shortest(found->str());
-        rest = (*found)[0].second;
+    for (std::size_t at = 0; at < line.size();) {
+        const std::size_t end = std::min(line.find_first_not_of(kOfNumbers, at), line.size());
+        const std::size_t next = std::min(line.find_first_of(kOfNumbers, end), line.size());
+        const std::string word = line.substr(at, end - at);
+        result += (has_long_fraction(word) ? shortest(word) : word) + line.substr(end, next - end);
+        at = next;
     }
-    return result.append(rest, line.cend());
+    return result;
 }
 
 /* toml++ of distributions prints 0.3 as 0.29999999999999999: the shortest text of the same number takes its place.
