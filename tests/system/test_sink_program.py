@@ -9,6 +9,7 @@ import json
 import os
 import pathlib
 import random
+import resource
 import signal
 import socket
 import subprocess
@@ -111,7 +112,11 @@ class SinkProgram(unittest.TestCase):
                               timeout=30)
 
     def start(self):
-        self.process = subprocess.Popen(self.arguments(), cwd=self.folder, stderr=subprocess.DEVNULL)
+        with (self.folder / "log").open("w") as log:
+            self.process = subprocess.Popen(self.arguments(), cwd=self.folder, stderr=log)
+        return self.connect()
+
+    def connect(self):
         link = socket.socket(socket.AF_UNIX)
         link.settimeout(10)
         for _ in range(500):
@@ -166,6 +171,24 @@ class SinkProgram(unittest.TestCase):
         self.assertGreater(numbers["session"]["refused"]["link_damaged"], 100)
         self.assertEqual(numbers["maps"]["received"], 0)
         self.assertFalse((self.folder / "link").exists())
+
+    def test_a_connection_waits_while_there_is_no_descriptor_for_it(self):
+        hello = frame(HELLO, 0, bytes([1, 0xEF, 0xBE, 1, 0]))
+        first = self.start()
+        first.sendall(hello)
+        self.assertEqual(read_answer(first), (0, b""))
+        pid = self.process.pid
+        used = 1 + max(int(name) for name in os.listdir(f"/proc/{pid}/fd"))
+        before = resource.prlimit(pid, resource.RLIMIT_NOFILE)
+        resource.prlimit(pid, resource.RLIMIT_NOFILE, (used, before[1]))
+        second = self.connect()
+        second.sendall(hello)
+        time.sleep(1.5)
+        told = (self.folder / "log").read_text().count("a connection waits")
+        self.assertGreater(told, 0)
+        self.assertLess(told, 10, "it asks without a pause")  # once a second; a machine may stall
+        resource.prlimit(pid, resource.RLIMIT_NOFILE, before)
+        self.assertEqual(read_answer(second), (0, b""))
 
     def test_a_killed_sink_starts_again_and_interrupt_exports(self):
         self.start().close()

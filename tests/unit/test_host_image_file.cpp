@@ -207,14 +207,5 @@ TEST(HostImageFile, AFailedWriteLeavesNothingBehind)
     EXPECT_EQ(entries, 1u);
 }
 
-TEST(HostInputError, IsOneLine)
-{
-    EXPECT_STREQ(InputError("a\nb", "c", "d\x1b[2J").what(), "a?b: c: d?[2J");
-    EXPECT_STREQ(InputError("a", "", "b").what(), "a: b");
-    EXPECT_EQ(run_program("test", []() -> int { throw InputError("a", "", "b"); }), 2);
-    EXPECT_EQ(run_program("test", []() -> int { throw std::runtime_error("b"); }), 1);
-    EXPECT_EQ(run_program("test", [] { return 7; }), 7);
-}
-
 } // namespace
 } // namespace tsr

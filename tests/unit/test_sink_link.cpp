@@ -1,10 +1,8 @@
 /* The gateway link: exactly one ANSWER each, over bytes and over sockets. SPDX-License-Identifier: Apache-2.0 */
-#include <atomic>
 #include <random>
 #include <thread>
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -256,32 +254,6 @@ TEST_F(SinkLink, WhatIsNoConnectedSocketIsRefused)
     const int alone = ::socket(AF_UNIX, SOCK_STREAM, 0);
     EXPECT_REFUSED(Gateways(parse_listen_address("fd:" + std::to_string(alone)), {}), "is not a connected stream");
     ::close(alone);
-}
-
-/* Its descriptors are gone: the connection waits, the loop sleeps, and takes it when there is one again. */
-TEST_F(SinkLink, AConnectionThatCannotBeTakenYetWaits)
-{
-    const auto path = folder / "link.sock";
-    const ListenAddress address = parse_listen_address("unix:" + path.string());
-    std::atomic<int> waited = 0;
-    GatewayOptions options;
-    options.once = true;
-    options.log = [&](const std::string &line) { waited += line.starts_with("a connection waits") ? 1 : 0; };
-    Gateways gateways(address, options);
-    const int descriptor = connect_to(path);
-    rlimit limit{};
-    ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &limit), 0);
-    const rlimit none{3, limit.rlim_max}; /* stdin, stdout and stderr, and poll(2) takes three */
-    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
-    std::thread thread([&] { gateways.serve(server); });
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    EXPECT_GE(waited, 1);
-    EXPECT_LE(waited, 10) << "it asks without a pause"; /* once a second; a machine may stall */
-    EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &limit), 0);
-    send_in_lockstep(descriptor, map_of(5));
-    ::close(descriptor);
-    thread.join();
-    EXPECT_TRUE(store.find(3, 5).has_value());
 }
 
 TEST_F(SinkLink, ASocketInUseIsRefusedAndAStaleOneReplaced)
