@@ -99,8 +99,12 @@ nlohmann::ordered_json cloud_json(const std::filesystem::path &file)
             {"step", step}, {"positions", base64(positions)}, {"colours", base64(colours)}};
 }
 
-std::string filled_page(std::string page, nlohmann::ordered_json data)
+std::string filled_page(std::span<const std::string_view> page, nlohmann::ordered_json data)
 {
+    std::string filled;
+    for (const std::string_view piece : page) {
+        filled += piece;
+    }
     write_out_large(data);
     /* "<" could end the element that carries the data. */
     constexpr std::string_view kEscaped = "\\u003c";
@@ -108,7 +112,7 @@ std::string filled_page(std::string page, nlohmann::ordered_json data)
     for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos; at += kEscaped.size()) {
         text.replace(at, 1, kEscaped);
     }
-    return page.replace(page.find(kDataMark), kDataMark.size(), text);
+    return filled.replace(filled.find(kDataMark), kDataMark.size(), text);
 }
 
 } // namespace tsr

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 
@@ -20,7 +21,7 @@ nlohmann::ordered_json cloud_json(const std::filesystem::path &file);
 
 /* A page of page_template.h with data in the place of its mark; whole numbers above 2^53, as seeds are, become texts.
  */
-std::string filled_page(std::string page, nlohmann::ordered_json data);
+std::string filled_page(std::span<const std::string_view> page, nlohmann::ordered_json data);
 
 } // namespace tsr
 
