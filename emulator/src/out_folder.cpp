@@ -11,7 +11,6 @@
 #include <cstring>
 #include <iterator>
 #include <utility>
-#include <vector>
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -85,10 +84,7 @@ void OutFolder::refuse_foreign() const
 
 void OutFolder::refuse_input(const std::filesystem::path &input) const
 {
-    std::vector<std::filesystem::path> removed{unfinished()};
-    std::transform(kNames.begin(), kNames.end(), std::back_inserter(removed),
-                   [this](const char *name) { return file(name); });
-    for (const std::filesystem::path &path : removed) {
+    for (const std::filesystem::path &path : cleared()) {
         if (lies_within(input, path)) {
             throw InputError(input.string(), "--out",
                              "is among the results of an earlier run in " + folder_.string() +
@@ -102,12 +98,17 @@ std::filesystem::path OutFolder::unfinished() const
     return file(kUnfinished);
 }
 
+std::vector<std::filesystem::path> OutFolder::cleared() const
+{
+    std::vector<std::filesystem::path> paths{unfinished()};
+    std::transform(kNames.begin(), kNames.end(), std::back_inserter(paths),
+                   [this](const char *name) { return file(name); });
+    return paths;
+}
+
 void OutFolder::clear() const
 {
-    std::vector<std::filesystem::path> gone{unfinished()};
-    std::transform(kNames.begin(), kNames.end(), std::back_inserter(gone),
-                   [this](const char *name) { return file(name); });
-    for (const std::filesystem::path &path : gone) {
+    for (const std::filesystem::path &path : cleared()) {
         std::error_code error;
         std::filesystem::remove_all(path, error);
         if (error) {

@@ -12,6 +12,7 @@
 #define TSR_EMULATOR_OUT_FOLDER_H
 
 #include <filesystem>
+#include <vector>
 
 namespace tsr
 {
@@ -41,6 +42,7 @@ class OutFolder
   private:
     void refuse_foreign() const;
     void recover() const;
+    std::vector<std::filesystem::path> cleared() const;
     void bring_back() const;
     void place() const;
     static bool is_there(const std::filesystem::path &path);
